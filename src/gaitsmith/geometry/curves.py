@@ -1,0 +1,126 @@
+"""Piecewise cubic curves: slopes, look-up, smooth steps. NumPy only, SciPy is the oracle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
+
+
+def smoothstep(u: Float[np.ndarray, "*n"] | float) -> Float[np.ndarray, "*n"]:
+    """``3u^2 - 2u^3`` on [0, 1], 0 before and 1 after: eases with no speed at both ends."""
+    u = np.clip(np.asarray(u, dtype=np.float64), 0.0, 1.0)
+    return u * u * (3.0 - 2.0 * u)
+
+
+def pchip_slopes(x: Float[np.ndarray, "n"], y: Float[np.ndarray, "n *c"]) -> Float[np.ndarray, "n *c"]:
+    """Slopes of the monotone cubic (PCHIP) through ``(x, y)``.
+
+    Fritsch & Butland's weighted harmonic mean inside, the three-point end formula kept
+    shape-preserving. The curve never leaves the range of neighbouring samples.
+    """
+    shape = (-1,) + (1,) * (y.ndim - 1)
+    h = np.diff(x).reshape(shape)
+    d = np.diff(y, axis=0) / h
+    if len(x) == 2:
+        return np.concatenate([d, d])
+    w1, w2 = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
+    same = d[:-1] * d[1:] > 0.0
+    safe = np.where(same, d[:-1], 1.0), np.where(same, d[1:], 1.0)
+    slopes = np.zeros_like(y)
+    slopes[1:-1] = np.where(same, (w1 + w2) / (w1 / safe[0] + w2 / safe[1]), 0.0)
+    slopes[0] = _pchip_end(h[0], h[1], d[0], d[1])
+    slopes[-1] = _pchip_end(h[-1], h[-2], d[-1], d[-2])
+    return slopes
+
+
+def _pchip_end(
+    h0: Float[np.ndarray, "*c"],
+    h1: Float[np.ndarray, "*c"],
+    d0: Float[np.ndarray, "*c"],
+    d1: Float[np.ndarray, "*c"],
+) -> Float[np.ndarray, "*c"]:
+    slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)
+    slope = np.where(np.sign(slope) != np.sign(d0), 0.0, slope)
+    steep = (np.sign(d0) != np.sign(d1)) & (np.abs(slope) > np.abs(3.0 * d0))
+    return np.where(steep, 3.0 * d0, slope)
+
+
+def parabola_slopes(
+    x: Float[np.ndarray, "n"], y: Float[np.ndarray, "n *c"]
+) -> Float[np.ndarray, "n *c"]:
+    """Slopes of the parabola through each sample and its neighbours (smooth data)."""
+    shape = (-1,) + (1,) * (y.ndim - 1)
+    h = np.diff(x).reshape(shape)
+    d = np.diff(y, axis=0) / h
+    if len(x) == 2:
+        return np.concatenate([d, d])
+    slopes = np.empty_like(y)
+    slopes[1:-1] = (h[1:] * d[:-1] + h[:-1] * d[1:]) / (h[1:] + h[:-1])
+    slopes[0] = ((2.0 * h[0] + h[1]) * d[0] - h[0] * d[1]) / (h[0] + h[1])
+    slopes[-1] = ((2.0 * h[-1] + h[-2]) * d[-1] - h[-1] * d[-2]) / (h[-1] + h[-2])
+    return slopes
+
+
+def hermite(
+    x: Float[np.ndarray, "n"],
+    y: Float[np.ndarray, "n c"],
+    slopes: Float[np.ndarray, "n c"],
+    at: Float[np.ndarray, "f"],
+    interval: Int[np.ndarray, "f"] | None = None,
+) -> Float[np.ndarray, "f c"]:
+    """Cubic Hermite curve through ``(x, y)`` with ``slopes``, read at ``at``; clamped outside.
+
+    ``interval`` (index of the left node) may be given by the caller who knows it.
+    """
+    if interval is None:
+        interval = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
+    right = interval + 1
+    h = x[right] - x[interval]
+    u = np.clip((at - x[interval]) / h, 0.0, 1.0)
+    v = 1.0 - u
+    # y0 + u^2 (3 - 2u) (y1 - y0): exact where both ends are equal and the slopes zero
+    left_value = y[interval]
+    rise = y[right]
+    rise -= left_value
+    rise *= (u * u * (3.0 - 2.0 * u))[:, None]
+    rise += left_value
+    rise += (h * u * v * v)[:, None] * slopes[interval]
+    rise -= (h * u * u * v)[:, None] * slopes[right]
+    return rise
+
+
+def pchip(
+    x: Float[np.ndarray, "n"], y: Float[np.ndarray, "n *c"], at: Float[np.ndarray, "f"]
+) -> Float[np.ndarray, "f *c"]:
+    """Monotone cubic through ``(x, y)``, read at ``at``; clamped outside."""
+    flat = y.reshape(len(x), -1)
+    out = hermite(x, flat, pchip_slopes(x, flat), np.atleast_1d(at))
+    return out.reshape(-1, *y.shape[1:])
+
+
+def end_slope_correction(
+    u: Float[np.ndarray, "n"], start: Float[np.ndarray, "c"], end: Float[np.ndarray, "c"]
+) -> Float[np.ndarray, "n c"]:
+    """Cubic on [0, 1] that is 0 at both ends with slopes ``start`` and ``end`` there.
+
+    Added to a curve it changes the speed with which the curve begins and ends, spread over
+    the whole interval, and moves neither end.
+    """
+    begins, ends = u * (1.0 - u) ** 2, -u * u * (1.0 - u)
+    return begins[:, None] * start + ends[:, None] * end
+
+
+def running_maximum(values: Float[np.ndarray, "n"], half: int) -> Float[np.ndarray, "n"]:
+    """Maximum of each value and its ``half`` neighbours on both sides."""
+    padded = np.pad(values, half, mode="edge")
+    return np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1).max(axis=-1)
+
+
+def hann_average(values: Float[np.ndarray, "n"], half: int) -> Float[np.ndarray, "n"]:
+    """Mean of each value and its ``half`` neighbours on both sides under a Hann window."""
+    window = np.hanning(2 * half + 3)[1:-1]
+    return np.convolve(np.pad(values, half, mode="edge"), window / window.sum(), mode="valid")

@@ -1,0 +1,1 @@
+"""The canonical motion: one skeleton, sampled. Every part of the package speaks it."""
