@@ -16,7 +16,9 @@ def smoothstep(u: Float[np.ndarray, "*n"] | float) -> Float[np.ndarray, "*n"]:
     return u * u * (3.0 - 2.0 * u)
 
 
-def pchip_slopes(x: Float[np.ndarray, "n"], y: Float[np.ndarray, "n *c"]) -> Float[np.ndarray, "n *c"]:
+def pchip_slopes(
+    x: Float[np.ndarray, "n"], y: Float[np.ndarray, "n *c"]
+) -> Float[np.ndarray, "n *c"]:
     """Slopes of the monotone cubic (PCHIP) through ``(x, y)``.
 
     Fritsch & Butland's weighted harmonic mean inside, the three-point end formula kept

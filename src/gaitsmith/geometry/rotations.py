@@ -39,9 +39,7 @@ def inverse(q: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n 4"]:
     return q * np.array([-1.0, -1.0, -1.0, 1.0])
 
 
-def rotate(
-    q: Float[np.ndarray, "*n 4"], v: Float[np.ndarray, "*n 3"]
-) -> Float[np.ndarray, "*n 3"]:
+def rotate(q: Float[np.ndarray, "*n 4"], v: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
     """Vectors ``v`` turned by ``q``."""
     qx, qy, qz, qw = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
     vx, vy, vz = v[..., 0], v[..., 1], v[..., 2]
@@ -133,7 +131,9 @@ def to_matrix(q: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n 3 3"]:
 
 def _check_order(order: str) -> None:
     order = order.lower()
-    if not (len(order) == 3 and set(order) <= set("xyz")) or any(a == b for a, b in pairwise(order)):
+    if not (len(order) == 3 and set(order) <= set("xyz")) or any(
+        a == b for a, b in pairwise(order)
+    ):
         raise InvalidInputError(
             f"order must be three axes, neighbours different, like 'ZXY', got {order!r}"
         )
@@ -177,7 +177,9 @@ def to_euler(order: str, q: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n 
     return (out + np.pi) % (2.0 * np.pi) - np.pi
 
 
-def continuous_euler(order: str, angles: Float[np.ndarray, "frames *n 3"]) -> Float[np.ndarray, "frames *n 3"]:
+def continuous_euler(
+    order: str, angles: Float[np.ndarray, "frames *n 3"]
+) -> Float[np.ndarray, "frames *n 3"]:
     """Euler angles of the same rotations without jumps from frame to frame.
 
     Each frame takes, of the two triples that give its rotation, the one nearer to the

@@ -45,7 +45,9 @@ def butterworth_zero_lag(
     return padded[pad : pad + len(signal)]
 
 
-def _recursive(x: Float[np.ndarray, "n *c"], a0: float, b1: float, b2: float) -> Float[np.ndarray, "n *c"]:
+def _recursive(
+    x: Float[np.ndarray, "n *c"], a0: float, b1: float, b2: float
+) -> Float[np.ndarray, "n *c"]:
     """One pass of the difference equation; a recurrence, hence a loop (learning only)."""
     y = np.empty_like(x)
     y[0], y[1] = x[0], x[1] if len(x) > 1 else x[0]
