@@ -40,13 +40,15 @@ Papers are cited by these keys:
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
+#: A step from standing feet side by side, a step of a walk, or one that closes to standing.
+StepKind = Literal["start", "walk", "stop"]
 LEFT, RIGHT = 0, 1
 SIDES = ("left", "right")
 #: +1 where +X is, -1 on the other side: multiplies lateral offsets.

@@ -1,0 +1,265 @@
+"""Walk data from the measured marker paths of one leg."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.body.body import Body, Foot
+from gaitsmith.errors import InvalidInputError
+from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.geometry.signals import butterworth_zero_lag
+from gaitsmith.walk.data import Character, TimedSequence, WalkData
+from gaitsmith.walk.generalize import generalize
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
+    from gaitsmith.motion.motion import Markers
+
+#: Markers that extraction reads. The ball is the fifth metatarsal.
+MARKERS = ("hip", "knee", "ankle", "heel", "ball", "toe")
+#: Straightest knee at heel strike: with marker data the hip-ankle distance can exceed the leg.
+STRAIGHTEST_KNEE = np.radians(172.0)
+FLAT_PHASES = (0.25, 0.60)
+
+
+@dataclass(frozen=True)
+class Extraction:
+    """Walk data and how it was found: frames of the events, measured foot, step time."""
+
+    walk: WalkData
+    heel_strikes: tuple[int, int]
+    toe_off_frame: int
+    step_time: float
+
+
+def extract(markers: Markers, body: Body, *, cutoff: float = 6.0) -> Extraction:
+    """Six timed sequences from markers of one leg over one stride.
+
+    Parameters
+    ----------
+    markers
+        Paths of :data:`MARKERS`, walking along +Z; x is not read. At least one heel strike
+        to the next of the same foot.
+    body
+        Whose legs these are: gives the leg length, which markers on the skin do not. Its foot
+        is replaced by the one measured here.
+    cutoff
+        Low-pass, Hz.
+
+    Returns
+    -------
+    The walk data belong to ``body`` with the measured foot, symmetric, all ends consistent.
+
+    Raises
+    ------
+    InvalidInputError
+        If no full stride is found.
+
+    Notes
+    -----
+    Symmetry between left and right is assumed: the hip path is the mean of both half
+    strides. The sole is the heel-ball line of the flat foot: its height and tilt are those of
+    the markers on the skin, not of the floor, and both are removed.
+    """
+    rate = markers.rate
+    paths = {
+        name: butterworth_zero_lag(markers[name][:, [2, 1]], cutoff=cutoff, rate=rate)
+        for name in MARKERS
+    }
+    first, last, off = _events(paths, rate)
+    frames_per_step = 0.5 * (last - first)
+    phase = (np.arange(len(markers.positions)) - first) / frames_per_step
+    flat = (phase >= FLAT_PHASES[0]) & (phase <= FLAT_PHASES[1])
+    pitch, meta = _sole_angles(paths, flat)
+    foot = _measured_foot(paths, flat)
+    floor = paths["ankle"][flat, 1].mean() - foot.ankle_height
+    here = float(paths["ankle"][flat, 0].mean())
+    length = 0.5 * float(paths["heel"][last, 0] - paths["heel"][first, 0])
+    toe_off = float(phase[off] - 1.0)
+
+    level = _crossing(phase, np.abs(pitch), np.radians(2.0), after=0.0, rising=False)
+    heel_off = _crossing(phase, -pitch, np.radians(2.0), after=level + 0.1, rising=True)
+    meta_off = _crossing(phase, meta, np.radians(8.0), after=heel_off, rising=True)
+
+    hip = _mean_hip(phase, paths["hip"] - [here, floor], length)
+    kappa = float(0.5 * (-hip.values[0, 0] + length - hip.values[-1, 0]) / length)
+    swing = _between(phase, 1.0 + toe_off, 2.0)
+    ankle = _read(phase, paths["ankle"], swing) - [here + length, floor]
+    strike_ankle = ankle[-1] - hip.values[-1]
+    character = Character(
+        ratio=length / body.leg_length,
+        knee=_interior_knee(body, float(np.hypot(*strike_ankle))),
+        strike_pitch=float(pitch[first]),
+        off_pitch=float(-pitch[off]),
+        off_meta=float(meta[off]),
+        kappa=kappa,
+    )
+    walk = WalkData(
+        body=replace(body, foot=foot),
+        previous_length=length,
+        length=length,
+        character=character,
+        flat=level,
+        heel_off=heel_off,
+        meta_off=meta_off,
+        toe_off=toe_off,
+        hip=hip,
+        foot1=_landing(phase, pitch, level),
+        foot2=_heel_rise(phase, pitch, level, heel_off, 1.0 + toe_off),
+        foot3=TimedSequence(swing - 1.0, _read(phase, pitch, swing)),
+        meta=_toe_rise(phase, meta, meta_off, 1.0 + toe_off),
+        ankle=TimedSequence(swing - 1.0, ankle),
+    )
+    # the identity generalization makes all ends agree with the mu functions
+    walk = generalize(walk, walk.body, length, length)
+    return Extraction(walk, (first, last), off, frames_per_step / rate)
+
+
+def _events(paths: dict[str, Float[np.ndarray, "n 2"]], rate: float) -> tuple[int, int, int]:
+    """Frames of two heel strikes and of the toe-off before the second.
+
+    The heel's farthest point ahead of the hips comes some frames before it bears, the toes'
+    farthest point behind after they have left: both move to where the point is nearly still.
+    """
+    hip = paths["hip"][:, 0]
+    walking = abs(hip[-1] - hip[0]) * rate / (len(hip) - 1)
+
+    def speed(name: str) -> Float[np.ndarray, "n"]:
+        return np.linalg.norm(np.gradient(paths[name], axis=0), axis=-1) * rate
+
+    slow_heel, slow_toe = speed("heel") < 0.5 * walking, speed("toe") < 0.5 * walking
+    strikes = []
+    for peak in _peaks(paths["heel"][:, 0] - hip):
+        later = np.flatnonzero(slow_heel[peak:])
+        if later.size:
+            strikes.append(int(peak + later[0]))
+    offs = []
+    for peak in _peaks(hip - paths["toe"][:, 0]):
+        before = np.flatnonzero(slow_toe[: peak + 1])
+        if before.size:
+            offs.append(int(before[-1]))
+    for first, last in zip(strikes, strikes[1:], strict=False):
+        inside = [o for o in offs if first < o < last]
+        if inside:
+            return first, last, inside[0]
+    raise InvalidInputError(
+        f"no full stride found: heel strikes at frames {strikes}, toe-offs at {offs}; the markers "
+        "must cover one heel strike to the next of the same foot"
+    )
+
+
+def _peaks(v: Float[np.ndarray, "n"]) -> list[int]:
+    top = (v[1:-1] >= v[:-2]) & (v[1:-1] > v[2:]) & (v[1:-1] > v.mean())
+    return [int(i) + 1 for i in np.flatnonzero(top)]
+
+
+def _sole_angles(
+    paths: dict[str, Float[np.ndarray, "n 2"]], flat: Bool[np.ndarray, "n"]
+) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n"]]:
+    """Sole pitch (toes up positive) and meta angle (toes against the floor), flat = 0."""
+
+    def angle(tail: str, head: str) -> Float[np.ndarray, "n"]:
+        d = paths[head] - paths[tail]
+        a = np.unwrap(np.arctan2(d[:, 1], d[:, 0]))
+        return a - a[flat].mean()
+
+    return angle("heel", "ball"), -angle("ball", "toe")
+
+
+def _measured_foot(
+    paths: dict[str, Float[np.ndarray, "n 2"]], flat: Bool[np.ndarray, "n"]
+) -> Foot:
+    sole = paths["ball"] - paths["heel"]
+    along = sole / np.linalg.norm(sole, axis=-1, keepdims=True)
+    ankle = paths["ankle"] - paths["heel"]
+    heel = float((ankle * along).sum(-1)[flat].mean())
+    height = float((along[:, 0] * ankle[:, 1] - along[:, 1] * ankle[:, 0])[flat].mean())
+    length = float(np.linalg.norm(sole, axis=-1)[flat].mean())
+    toes = float(np.linalg.norm(paths["toe"] - paths["ball"], axis=-1)[flat].mean())
+    return Foot(ankle_height=height, heel=heel, ball=length - heel, toes=toes)
+
+
+def _crossing(
+    phase: Float[np.ndarray, "n"],
+    value: Float[np.ndarray, "n"],
+    level: float,
+    *,
+    after: float,
+    rising: bool,
+) -> float:
+    """Phase at which ``value`` crosses ``level`` first after ``after``, between frames."""
+    over = value > level if rising else value < level
+    index = int(np.flatnonzero(over & (phase > after))[0])
+    v0, v1 = value[index - 1], value[index]
+    share = 1.0 if v1 == v0 else np.clip((level - v0) / (v1 - v0), 0.0, 1.0)
+    return float(phase[index - 1] + share * (phase[index] - phase[index - 1]))
+
+
+def _between(phase: Float[np.ndarray, "n"], first: float, last: float) -> Float[np.ndarray, "m"]:
+    """``first``, the measured phases well inside, ``last``."""
+    gap = 0.25 * (phase[1] - phase[0])
+    return np.concatenate([[first], phase[(phase > first + gap) & (phase < last - gap)], [last]])
+
+
+def _read(
+    phase: Float[np.ndarray, "n"], value: Float[np.ndarray, "n *c"], at: Float[np.ndarray, "m"]
+) -> Float[np.ndarray, "m *c"]:
+    columns = value.reshape(len(phase), -1).T
+    out = np.stack([np.interp(at, phase, column) for column in columns], axis=-1)
+    return out[:, 0] if value.ndim == 1 else out
+
+
+def _mean_hip(
+    phase: Float[np.ndarray, "n"], hip: Float[np.ndarray, "n 2"], length: float
+) -> TimedSequence:
+    times = _between(phase, 0.0, 1.0)
+    both = 0.5 * (_read(phase, hip, times) + _read(phase, hip, times + 1.0) - [length, 0.0])
+    gap = both[-1] - both[0] - [length, 0.0]  # what keeps the mean stride from closing
+    return TimedSequence(times, both + (0.5 - times)[:, None] * gap)
+
+
+def _interior_knee(body: Body, distance: float) -> float:
+    cosine = (body.thigh**2 + body.shin**2 - distance**2) / (2.0 * body.thigh * body.shin)
+    return min(float(np.arccos(np.clip(cosine, -1.0, 1.0))), float(STRAIGHTEST_KNEE))
+
+
+def _landing(
+    phase: Float[np.ndarray, "n"], pitch: Float[np.ndarray, "n"], flat: float
+) -> TimedSequence:
+    """F1: from the strike's pitch down to exactly 0."""
+    times = _between(phase, 0.0, flat)
+    value = _read(phase, pitch, times)
+    value = value - value[-1] * times / flat
+    return TimedSequence(times, np.minimum.accumulate(np.maximum(value, 0.0)))
+
+
+def _heel_rise(
+    phase: Float[np.ndarray, "n"],
+    pitch: Float[np.ndarray, "n"],
+    flat: float,
+    heel_off: float,
+    toe_off: float,
+) -> TimedSequence:
+    """F2: 0 until the heel leaves, then falling; the onset eased over a tenth of a step.
+
+    The measured pitch creeps to the threshold before; to begin there abruptly gives the knee
+    a sharp valley at mid-stance.
+    """
+    times = np.concatenate([[flat], _between(phase, heel_off, toe_off)])
+    value = _read(phase, pitch, times) * smoothstep((times - heel_off) / 0.1)
+    value[times <= heel_off] = 0.0
+    return TimedSequence(times, np.minimum.accumulate(np.minimum(value, 0.0)))
+
+
+def _toe_rise(
+    phase: Float[np.ndarray, "n"], meta: Float[np.ndarray, "n"], meta_off: float, toe_off: float
+) -> TimedSequence:
+    """M: from 0 at MOM, rising to toe-off."""
+    times = _between(phase, meta_off, toe_off)
+    value = _read(phase, meta, times)
+    value = value - value[0] * (toe_off - times) / (toe_off - meta_off)
+    return TimedSequence(times, np.maximum.accumulate(np.maximum(value, 0.0)))
