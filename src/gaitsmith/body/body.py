@@ -9,6 +9,9 @@ import numpy as np
 from gaitsmith._checks import number, positive
 from gaitsmith.errors import InvalidInputError
 
+#: How far a body's height may differ from what its parts add up to, as a share of that.
+HEIGHT_TOLERANCE = 0.25
+
 
 @dataclass(frozen=True)
 class Foot:
@@ -138,31 +141,50 @@ class Body:
             unit = "kilograms" if field.name == "mass" else "meters"
             value = positive(f"body.{field.name}", getattr(self, field.name), unit)
             object.__setattr__(self, field.name, value)
-        if not (isinstance(self.spine_segments, int) and 1 <= self.spine_segments <= 40):
+        count = self.spine_segments
+        if isinstance(count, bool) or not (isinstance(count, int) and 1 <= count <= 40):
             raise InvalidInputError(
-                f"body.spine_segments must be a whole number from 1 to 40, got {self.spine_segments!r}"
+                f"body.spine_segments must be a whole number from 1 to 40, got {count!r}"
             )
-        ratio = self.thigh / self.shin
-        if not 0.5 <= ratio <= 2.0:
-            raise InvalidInputError(
+        wrong = self._contradictions()
+        if wrong:
+            raise InvalidInputError("; ".join(wrong))
+
+    def _contradictions(self) -> list[str]:
+        """Why these lengths cannot be one body together; empty if they can."""
+        foot, wrong = self.foot, list[str]()
+        if not 0.5 <= self.thigh / self.shin <= 2.0:
+            wrong.append(
                 "body.thigh must be between half and twice body.shin "
                 f"({self.shin:.3f} m), got {self.thigh:.3f} m"
             )
-        if self.foot.length >= 0.7 * self.leg_length:
-            raise InvalidInputError(
-                f"foot (heel to toe tip {self.foot.length:.3f} m) must be shorter than 0.7 of the "
+        if foot.length >= 0.7 * self.leg_length:
+            wrong.append(
+                f"foot (heel to toe tip {foot.length:.3f} m) must be shorter than 0.7 of the "
                 f"leg ({self.leg_length:.3f} m): no such body can roll over its foot"
             )
-        if self.foot.ankle_height >= 0.5 * self.shin:
-            raise InvalidInputError(
-                f"foot.ankle_height ({self.foot.ankle_height:.3f} m) must be below half the shin "
+        if foot.ankle_height >= 0.5 * self.shin:
+            wrong.append(
+                f"foot.ankle_height ({foot.ankle_height:.3f} m) must be below half the shin "
                 f"({self.shin:.3f} m)"
             )
         if self.hip_width >= self.leg_length:
-            raise InvalidInputError(
+            wrong.append(
                 f"body.hip_width ({self.hip_width:.3f} m) must be below the leg length "
                 f"({self.leg_length:.3f} m)"
             )
+        if self.shoulder_drop >= self.trunk:
+            wrong.append(
+                f"body.shoulder_drop ({self.shoulder_drop:.3f} m) must be below the trunk "
+                f"({self.trunk:.3f} m)"
+            )
+        stacked = self.hip_height + self.trunk + self.neck + self.head
+        if abs(self.height - stacked) > HEIGHT_TOLERANCE * stacked:
+            wrong.append(
+                f"body.height ({self.height:.3f} m) must be within {HEIGHT_TOLERANCE:.0%} of "
+                f"ankle height, shin, thigh, trunk, neck and head together ({stacked:.3f} m)"
+            )
+        return wrong
 
     @property
     def leg_length(self) -> float:

@@ -35,9 +35,7 @@ def turned(
     return np.stack([forward * c - up * s, forward * s + up * c], axis=-1)
 
 
-def roll(
-    foot: Foot, pitch: Float[np.ndarray, "*n"], meta: Float[np.ndarray, "*n"]
-) -> SolePose:
+def roll(foot: Foot, pitch: Float[np.ndarray, "*n"], meta: Float[np.ndarray, "*n"]) -> SolePose:
     """Pose of a foot that stands at N with sole pitch and meta angle (radians).
 
     ``pitch >= 0`` turns the whole foot about the heel; ``pitch < 0`` raises the heel while
@@ -60,9 +58,7 @@ def roll(
         by_joint = joint + turned(forward - foot.ball, up - foot.toe_joint_height, pitch)
         return np.where(rocker[..., None], by_heel, by_joint)
 
-    toe = np.where(
-        rocker[..., None], at_heel + turned(foot.heel_ball + foot.toes, 0.0, pitch), tip
-    )
+    toe = np.where(rocker[..., None], at_heel + turned(foot.heel_ball + foot.toes, 0.0, pitch), tip)
     return SolePose(
         heel=point(-foot.heel, 0.0),
         ball=point(foot.ball, 0.0),

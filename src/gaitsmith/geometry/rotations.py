@@ -164,17 +164,22 @@ def to_euler(order: str, q: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n 
         k = 3 - i - j
     sign = float((i - j) * (j - k) * (k - i) // 2)
     x = q[..., 3], q[..., i], q[..., j], sign * q[..., k]
-    a, b, c, d = x if proper else (x[0] - x[2], x[1] + x[3], x[2] + x[0], x[3] - x[1])
+    # i, j, k all different: turned by another 90 degrees about j it is a triple i, j, i
+    a, b, c, d = x if proper else (x[0] - x[2], x[1] - x[3], x[2] + x[0], x[3] + x[1])
     middle = 2.0 * np.arctan2(np.hypot(c, d), np.hypot(a, b))
-    plus, minus = np.arctan2(b, a), np.arctan2(d, c)
-    first, third = plus - minus, plus + minus
+    plus, minus = np.arctan2(b, a), np.arctan2(d, c)  # half the sum and half the difference
+    first, third = plus + minus, plus - minus
     lock_low, lock_high = np.abs(middle) < 1e-7, np.abs(middle - np.pi) < 1e-7
-    first = np.where(lock_low, 2.0 * plus, np.where(lock_high, -2.0 * minus, first))
+    first = np.where(lock_low, 2.0 * plus, np.where(lock_high, 2.0 * minus, first))
     third = np.where(lock_low | lock_high, 0.0, third)
     if not proper:
-        third, middle = sign * third, middle - 0.5 * np.pi
-    out = np.stack([first, middle, third], axis=-1)
-    return (out + np.pi) % (2.0 * np.pi) - np.pi
+        third, middle = -sign * third, middle - 0.5 * np.pi
+    return np.stack([_wrapped(first), middle, _wrapped(third)], axis=-1)
+
+
+def _wrapped(angle: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
+    """The same angle in [-pi, pi)."""
+    return (angle + np.pi) % (2.0 * np.pi) - np.pi
 
 
 def continuous_euler(
@@ -185,6 +190,7 @@ def continuous_euler(
     Each frame takes, of the two triples that give its rotation, the one nearer to the
     frame before, and full turns are added where an angle wraps.
     """
+    _check_order(order)
     order = order.lower()
     first, second, third = angles[..., 0], angles[..., 1], angles[..., 2]
     flipped = np.pi - second if order[0] != order[2] else -second
@@ -192,7 +198,7 @@ def continuous_euler(
     pair = np.stack([angles, other])  # (2, frames, ..., 3)
 
     def gap(a: Float[np.ndarray, "..."], b: Float[np.ndarray, "..."]) -> Float[np.ndarray, "..."]:
-        return np.abs((a - b + np.pi) % (2.0 * np.pi) - np.pi).sum(-1)
+        return np.abs(_wrapped(a - b)).sum(-1)
 
     # swap[f]: does going over to the other triple between f-1 and f bring them nearer?
     swap = gap(pair[1, 1:], pair[0, :-1]) < gap(pair[0, 1:], pair[0, :-1]) - 1e-12

@@ -1,0 +1,182 @@
+"""A planned contact, looked up at any phases: hips, legs and feet of the body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.body.leg import two_bone_ik
+from gaitsmith.body.sole import roll
+from gaitsmith.contact.foothold import Footholds
+from gaitsmith.contact.reference import bearing
+from gaitsmith.conventions import SIDE_SIGN, ahead
+from gaitsmith.geometry.curves import hermite, parabola_slopes, pchip_slopes, smoothstep
+from gaitsmith.geometry.rotations import about, exp, inverse, multiply, rotate
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Int
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.contact.reference import Proposal
+
+#: Curves whose sign carries meaning (which part of the sole bears) are read monotonely.
+MONOTONE = ("pitch", "meta", "bend")
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """F poses of a body whose feet are on the ground.
+
+    Attributes
+    ----------
+    center
+        ``(F, 3)`` mid-point of the hips, world, meters.
+    heading
+        ``(F,)`` of the walk, radians.
+    pelvis
+        ``(F, 4)`` world rotation.
+    thigh, shin, foot
+        ``(F, 2, 4)`` world rotations of [left, right].
+    bend
+        ``(F, 2)`` toes against the sole, toes up positive, radians.
+    knee
+        ``(F, 2)`` flexion, radians.
+    upper
+        ``(F, U, 3)`` local rotation vectors of the upper body's joints.
+    contacts
+        ``(F, 2, 3)`` [left, right] x [heel, ball, toe tip] bears.
+    """
+
+    center: Float[np.ndarray, "F 3"]
+    heading: Float[np.ndarray, "F"]
+    pelvis: Float[np.ndarray, "F 4"]
+    thigh: Float[np.ndarray, "F 2 4"]
+    shin: Float[np.ndarray, "F 2 4"]
+    foot: Float[np.ndarray, "F 2 4"]
+    bend: Float[np.ndarray, "F 2"]
+    knee: Float[np.ndarray, "F 2"]
+    upper: Float[np.ndarray, "F U 3"]
+    contacts: Bool[np.ndarray, "F 2 3"]
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPlan:
+    """Everything that is needed to pose a walk at any walk phase: curves and footholds.
+
+    A walk phase is the index of a step plus the phase within it.
+    """
+
+    body: Body
+    at: Float[np.ndarray, "M"]
+    table: Float[np.ndarray, "M C"]
+    slopes: Float[np.ndarray, "M C"]
+    columns: dict[str, slice]
+    upper_joints: int
+    stance: Int[np.ndarray, "S"]
+    toe_off: Float[np.ndarray, "S"]
+    stands: Footholds
+    targets: Footholds
+    level: bool
+
+    @staticmethod
+    def of(walk: Proposal, stands: Footholds, targets: Footholds, body: Body) -> ContactPlan:
+        """Freeze the corrected curves of a walk into a look-up table."""
+        blocks, slopes, columns, width = [], [], {}, 0
+        for name, values in walk.curves.items():
+            flat = values.reshape(len(walk.at), -1)
+            slope = pchip_slopes if name in MONOTONE else parabola_slopes
+            blocks.append(flat)
+            slopes.append(slope(walk.at, flat))
+            columns[name] = slice(width, width + flat.shape[1])
+            width += flat.shape[1]
+        return ContactPlan(
+            body=body,
+            at=walk.at,
+            table=np.concatenate(blocks, axis=1),
+            slopes=np.concatenate(slopes, axis=1),
+            columns=columns,
+            upper_joints=walk.curves["upper"].shape[1],
+            stance=walk.stance,
+            toe_off=walk.toe_off,
+            stands=stands,
+            targets=targets,
+            level=not (stands.tilt.any() or targets.tilt.any()),
+        )
+
+    @property
+    def steps(self) -> int:
+        """Number of steps planned."""
+        return len(self.stance)
+
+    def poses(self, walk_phase: Float[np.ndarray, "F"]) -> Poses:
+        """Poses at walk phases in [0, steps], in any order; O(1) each."""
+        values = hermite(self.at, self.table, self.slopes, walk_phase)
+
+        def read(name: str, *shape: int) -> Float[np.ndarray, "F ..."]:
+            return values[:, self.columns[name]].reshape(len(values), *shape)
+
+        step = np.clip(walk_phase.astype(np.int64), 0, self.steps - 1)
+        phase = walk_phase - step
+        down = bearing(self.stance, self.toe_off, step, phase)
+        center, heading = read("center", 3), read("heading")
+        pitch, meta, bend = read("pitch", 2), read("meta", 2), read("bend", 2)
+        bend = np.where(down, np.where(pitch < 0.0, -pitch - meta, 0.0), bend)
+        pelvis = multiply(about("y", heading), exp(read("pelvis", 3)))
+        ankle, foot = self._feet(step, phase, down, pitch, meta, read("ankle", 2, 3), read("foot_heading", 2))
+        half = (0.5 * self.body.hip_width) * rotate(pelvis, np.array([1.0, 0.0, 0.0]))
+        hip = center[:, None] + SIDE_SIGN[:, None] * half[:, None]
+        # the knee points half way between where the foot and where the pelvis face
+        towards = ahead(read("foot_heading", 2)) + ahead(heading)[:, None]
+        leg = two_bone_ik(hip, ankle, towards, thigh=self.body.thigh, shin=self.body.shin)
+        contacts = np.stack(
+            [down & (pitch >= 0.0), down & (pitch <= 0.0) & (meta == 0.0), down & (pitch <= 0.0)],
+            axis=-1,
+        )
+        return Poses(
+            center=center,
+            heading=heading,
+            pelvis=pelvis,
+            thigh=leg.thigh,
+            shin=leg.shin,
+            foot=foot,
+            bend=bend,
+            knee=leg.flexion,
+            upper=read("upper", self.upper_joints, 3),
+            contacts=contacts,
+        )
+
+    def _feet(
+        self,
+        step: Int[np.ndarray, "F"],
+        phase: Float[np.ndarray, "F"],
+        down: Bool[np.ndarray, "F 2"],
+        pitch: Float[np.ndarray, "F 2"],
+        meta: Float[np.ndarray, "F 2"],
+        ankle: Float[np.ndarray, "F 2 3"],
+        heading: Float[np.ndarray, "F 2"],
+    ) -> tuple[Float[np.ndarray, "F 2 3"], Float[np.ndarray, "F 2 4"]]:
+        """Ankles and world rotations of the feet; exact on their footholds where they bear."""
+        stand = self.stands.at(step)
+        points = roll(self.body.foot, pitch, meta).ankle
+        ankle = np.where(down[..., None], stand.place(points), ankle)
+        level = multiply(about("y", heading), about("x", -pitch))
+        if self.level:
+            return ankle, level
+        off = self.toe_off[step]
+        share = smoothstep((phase - off) / np.where(off < 1.0, 1.0 - off, 1.0))
+        swing = np.arange(2) != self.stance[step][:, None]
+        share = np.where(swing & ~down, share[:, None], 0.0)[..., None]
+        tilt = (1.0 - share) * stand.tilt + share * self.targets.tilt[step][:, None]
+        return ankle, multiply(exp(tilt), level)
+
+
+def local_legs(poses: Poses) -> dict[str, Float[np.ndarray, "F 2 4"]]:
+    """Local rotations of [left, right] UpperLeg, LowerLeg, Foot and Toes, by name."""
+    return {
+        "UpperLeg": multiply(inverse(poses.pelvis)[:, None], poses.thigh),
+        "LowerLeg": about("x", poses.knee),
+        "Foot": multiply(inverse(poses.shin), poses.foot),
+        "Toes": about("x", -poses.bend),
+    }

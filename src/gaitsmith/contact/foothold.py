@@ -1,0 +1,99 @@
+"""The plane a foot stands on, and the foot upon it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.body.sole import SolePose, roll
+from gaitsmith.conventions import UP, ahead
+from gaitsmith.geometry.rotations import about, from_basis, inverse, log, multiply
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+    from gaitsmith.body.body import Foot
+    from gaitsmith.ground import Ground
+
+
+@dataclass(frozen=True, eq=False)
+class Footholds:
+    """Frames of footholds: N, the sole's forward direction and its normal, any leading axes.
+
+    Attributes
+    ----------
+    position, forward, normal
+        ``(*n, 3)``; ``forward`` has the foothold's heading seen from above.
+    tilt
+        ``(*n, 3)`` rotation vector, world: how a level foot of this heading is tilted to lie
+        on the plane; all zero on level ground.
+    """
+
+    position: Float[np.ndarray, "*n 3"]
+    forward: Float[np.ndarray, "*n 3"]
+    normal: Float[np.ndarray, "*n 3"]
+    tilt: Float[np.ndarray, "*n 3"]
+
+    def at(self, index: object) -> Footholds:
+        """The footholds that NumPy index ``index`` picks."""
+        fields = (self.position, self.forward, self.normal, self.tilt)
+        return Footholds(*(f[index] for f in fields))  # type: ignore[index]
+
+    def place(self, points: Float[np.ndarray, "*n 2"]) -> Float[np.ndarray, "*n 3"]:
+        """World position of sagittal points ``(forward, up)`` from N."""
+        return (
+            self.position + points[..., :1] * self.forward + points[..., 1:] * self.normal
+        )
+
+    def ankle(
+        self, foot: Foot, pitch: Float[np.ndarray, "*n"], meta: Float[np.ndarray, "*n"]
+    ) -> Float[np.ndarray, "*n 3"]:
+        """World position of the ankle of a foot that stands here."""
+        return self.place(roll(foot, pitch, meta).ankle)
+
+
+def footholds(
+    position: Float[np.ndarray, "*n 3"], heading: Float[np.ndarray, "*n"], ground: Ground
+) -> Footholds:
+    """Frames of the footholds at N ``position`` on ``ground``."""
+    normal = ground.normal(position[..., 0], position[..., 2])
+    level = ahead(heading)
+    forward = level - ((level * normal).sum(-1) / normal[..., 1])[..., None] * UP
+    forward /= np.linalg.norm(forward, axis=-1, keepdims=True)
+    turned = from_basis(np.cross(normal, forward), normal, forward)
+    tilt = log(multiply(turned, inverse(about("y", heading))))
+    tilt = np.where(np.abs(normal - UP).max(-1, keepdims=True) > 1e-15, tilt, 0.0)
+    return Footholds(position, forward, normal, tilt)
+
+
+def sole_in_air(
+    foot: Foot,
+    ankle_height: Float[np.ndarray, "*n"],
+    pitch: Float[np.ndarray, "*n"],
+    bend: Float[np.ndarray, "*n"],
+) -> SolePose:
+    """Sole points of a free foot, forward from its ankle, up as the ankle's height counts."""
+    c, s = np.cos(pitch), np.sin(pitch)
+
+    def point(forward: float, up: float) -> Float[np.ndarray, "*n 2"]:
+        return np.stack([forward * c - up * s, ankle_height + forward * s + up * c], axis=-1)
+
+    drop = -foot.ankle_height
+    joint = point(foot.ball, drop + foot.toe_joint_height)
+    toes = pitch + bend
+    tip = joint + np.stack(
+        [
+            foot.toes * np.cos(toes) + foot.toe_joint_height * np.sin(toes),
+            foot.toes * np.sin(toes) - foot.toe_joint_height * np.cos(toes),
+        ],
+        axis=-1,
+    )
+    return SolePose(
+        heel=point(-foot.heel, drop),
+        ball=point(foot.ball, drop),
+        toe=tip,
+        ankle=point(0.0, 0.0),
+        toe_joint=joint,
+    )

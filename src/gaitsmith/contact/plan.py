@@ -1,0 +1,248 @@
+"""Plan the contact of a whole walk: locks, lowering, heel raise, clearance, on its nodes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.contact.apply import ContactPlan
+from gaitsmith.contact.foothold import Footholds, footholds, sole_in_air
+from gaitsmith.contact.reach import REAR_SLACK, drawn_near, lowering, raised_heel
+from gaitsmith.contact.reference import Proposal, ReferenceStep, stack
+from gaitsmith.conventions import SIDE_SIGN
+from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.geometry.rotations import about, exp, multiply, rotate
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jaxtyping import Bool, Float, Int
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.ground import Ground
+
+#: The sole keeps this far from the ground in swing, meters, rising over a fifth of the swing.
+CLEARANCE, CLEARANCE_RAMP = 0.010, 0.2
+#: Part of the swing over which its first speed is matched to the leaving foot's.
+LEAVING = 0.4
+
+
+def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> ContactPlan:
+    """Make the proposed steps meet the ground.
+
+    Parameters
+    ----------
+    steps
+        Consecutive steps: each begins where the one before ends.
+    body
+        Whose legs and feet.
+    ground
+        Where the footholds lie.
+
+    Raises
+    ------
+    InfeasibleStepError
+        If a leg cannot reach its foothold.
+    """
+    walk = stack(steps)
+    stands = footholds(walk.foothold, walk.foothold_heading, ground)
+    targets = footholds(walk.target, walk.target_heading, ground)
+    down = walk.bearing()
+    hip = _hips(walk, body)
+    _lock(walk, body, stands, down)
+    rear = _rear(walk, down)
+    slack = np.where(down, 0.0, np.inf)
+    share = walk.phase / np.minimum(walk.toe_off[walk.step], 1.0)
+    slack[rear] = (REAR_SLACK * body.leg_length * share)[rear.any(-1)]
+    down_by = lowering(
+        walk.at, hip, walk.curves["ankle"], slack, leg_length=body.leg_length
+    )
+    walk.curves["center"][:, 1] -= down_by
+    hip[..., 1] -= down_by[:, None]
+    _raise_rear_heels(walk, body, stands, rear, hip)
+    _lock(walk, body, stands, down)
+    for side in (0, 1):
+        _swing(walk, body, ground, stands, targets, side, hip[:, side])
+    return ContactPlan.of(walk, stands, targets, body)
+
+
+def _hips(walk: Proposal, body: Body) -> Float[np.ndarray, "M 2 3"]:
+    """World positions of the hip joints."""
+    pelvis = multiply(about("y", walk.curves["heading"]), exp(walk.curves["pelvis"]))
+    half = 0.5 * body.hip_width * rotate(pelvis, np.array([1.0, 0.0, 0.0]))
+    return walk.curves["center"][:, None] + SIDE_SIGN[:, None] * half[:, None]
+
+
+def _lock(
+    walk: Proposal, body: Body, stands: Footholds, down: Bool[np.ndarray, "M 2"]
+) -> None:
+    """Put the ankle and the heading of every bearing foot where its foothold has them."""
+    node, side = np.nonzero(down)
+    here = stands.at((walk.step[node], side))
+    curves = walk.curves
+    curves["ankle"][node, side] = here.ankle(
+        body.foot, curves["pitch"][node, side], curves["meta"][node, side]
+    )
+    curves["foot_heading"][node, side] = walk.foothold_heading[walk.step[node], side]
+
+
+def _rear(walk: Proposal, down: Bool[np.ndarray, "M 2"]) -> Bool[np.ndarray, "M 2"]:
+    """Feet that still bear in a step in which they will leave."""
+    rear = np.zeros_like(down)
+    leaves = walk.toe_off[walk.step] < 1.0
+    node = np.arange(len(down))
+    swing = 1 - walk.stance[walk.step]
+    rear[node, swing] = down[node, swing] & leaves
+    return rear
+
+
+def _raise_rear_heels(
+    walk: Proposal,
+    body: Body,
+    stands: Footholds,
+    rear: Bool[np.ndarray, "M 2"],
+    hip: Float[np.ndarray, "M 2 3"],
+) -> None:
+    """Raise rear heels where the leg does not reach, and let the raise die in the swing."""
+    node, side = np.nonzero(rear)
+    curves = walk.curves
+    extra = raised_heel(
+        body.foot,
+        stands.at((walk.step[node], side)),
+        hip[node, side],
+        curves["pitch"][node, side],
+        curves["meta"][node, side],
+        leg_length=body.leg_length,
+    )
+    if not extra.any():
+        return
+    curves["pitch"][node, side] -= extra
+    curves["bend"][node, side] += extra
+    leaving = np.zeros(len(walk.stance))
+    at_off = walk.phase[node] == walk.toe_off[walk.step[node]]
+    leaving[walk.step[node[at_off]]] = extra[at_off]
+    swing = 1 - walk.stance[walk.step]
+    u = _swing_phase(walk)
+    free = (u > 0.0) & (u < 0.5)
+    fade = leaving[walk.step] * np.where(free, (1.0 - 2.0 * u) ** 3, 0.0)
+    every = np.arange(len(swing))
+    curves["pitch"][every, swing] -= fade
+    curves["bend"][every, swing] += fade
+
+
+def _swing_phase(walk: Proposal) -> Float[np.ndarray, "M"]:
+    """0 at toe-off, 1 at heel strike; below 0 while both feet bear."""
+    off = walk.toe_off[walk.step]
+    return np.where(off < 1.0, (walk.phase - off) / np.where(off < 1.0, 1.0 - off, 1.0), -1.0)
+
+
+def _swing(
+    walk: Proposal,
+    body: Body,
+    ground: Ground,
+    stands: Footholds,
+    targets: Footholds,
+    side: int,
+    hip: Float[np.ndarray, "M 3"],
+) -> None:
+    """Carry one foot through its swings: ends met, ground cleared, leg in reach."""
+    u = _swing_phase(walk)
+    swings = walk.stance[walk.step] == 1 - side
+    free = swings & (u >= 0.0)
+    if not free.any():
+        return
+    curves, foot = walk.curves, body.foot
+    at, step, w = u[free], walk.step[free], smoothstep(u[free])[:, None]
+    pitch, bend = curves["pitch"][free, side], curves["bend"][free, side]
+    ankle = np.array(curves["ankle"][free, side])
+    heading = np.array(curves["foot_heading"][free, side])
+    first = np.flatnonzero(np.concatenate([[True], np.diff(step) > 0]))
+    count = np.diff(np.append(first, len(step)))
+
+    # both ends where the footholds have them: what the proposal misses is spread over the swing
+    steps = step[first]
+    start = stands.at((steps, side))
+    land_pitch = walk.curves["pitch"][np.searchsorted(walk.at, steps + 1.0), side]
+    end = targets.at(steps).ankle(foot, land_pitch, np.zeros(len(steps)))
+    ankle[first] = walk.leaving.ankle[steps]
+
+    def spread(at_start: Float[np.ndarray, "k c"], at_end: Float[np.ndarray, "k c"]) -> Float[np.ndarray, "n c"]:
+        return np.repeat(at_start, count, axis=0) * (1.0 - w) + np.repeat(at_end, count, axis=0) * w
+
+    ankle += spread(
+        start.ankle(foot, pitch[first], curves["meta"][free, side][first])
+        - walk.leaving.ankle[steps],
+        end - walk.landing.ankle[steps],
+    )
+    heading[first] = walk.leaving.heading[steps]
+    heading += spread(
+        (walk.foothold_heading[steps, side] - walk.leaving.heading[steps])[:, None],
+        (walk.target_heading[steps] - walk.landing.heading[steps])[:, None],
+    )[:, 0]
+    pitch = pitch + np.repeat(land_pitch - walk.landing.pitch[steps], count) * w[:, 0]
+
+    ankle += _leaving_speed(walk, body, stands, side, free, first, count, ankle)
+    ankle[:, 1] += _clearance(body, ground, ankle, pitch, bend, heading, at)
+    weight = smoothstep(at / 0.1) * smoothstep((1.0 - at) / 0.05)
+    ankle = drawn_near(hip[free], ankle, weight, body)
+    curves["ankle"][free, side] = ankle
+    curves["foot_heading"][free, side] = heading
+    curves["pitch"][free, side] = pitch
+
+
+def _leaving_speed(
+    walk: Proposal,
+    body: Body,
+    stands: Footholds,
+    side: int,
+    free: Bool[np.ndarray, "M"],
+    first: Int[np.ndarray, "k"],
+    count: Int[np.ndarray, "k"],
+    ankle: Float[np.ndarray, "n 3"],
+) -> Float[np.ndarray, "n 3"]:
+    """What makes the ankle leave the ground with the speed it had on the toe tip.
+
+    [KB92b] joins positions only (erratum D17). The correction fades over the first part of
+    the swing and moves neither end.
+    """
+    at = walk.at[free]
+    node = np.flatnonzero(free)[first]
+
+    def slope(x: Float[np.ndarray, "k 3"], y: Float[np.ndarray, "k 3 3"]) -> Float[np.ndarray, "k 3"]:
+        """End slope of the parabola through three samples, the first being the end."""
+        h0, h1 = (x[:, 1] - x[:, 0])[:, None], (x[:, 2] - x[:, 1])[:, None]
+        d0, d1 = (y[:, 1] - y[:, 0]) / h0, (y[:, 2] - y[:, 1]) / h1
+        return ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)
+
+    after = first[:, None] + np.arange(3)
+    before = node[:, None] - np.arange(3)
+    leaving = slope(walk.at[before], walk.curves["ankle"][before, side])
+    going = slope(at[after], ankle[after])
+    span = LEAVING * (1.0 - walk.toe_off[walk.step[node]])
+    u = np.clip((at - np.repeat(at[first], count)) / np.repeat(span, count), 0.0, 1.0)
+    shape = u * (1.0 - u) ** 2
+    return np.repeat((leaving - going) * span[:, None], count, axis=0) * shape[:, None]
+
+
+def _clearance(
+    body: Body,
+    ground: Ground,
+    ankle: Float[np.ndarray, "n 3"],
+    pitch: Float[np.ndarray, "n"],
+    bend: Float[np.ndarray, "n"],
+    heading: Float[np.ndarray, "n"],
+    u: Float[np.ndarray, "n"],
+) -> Float[np.ndarray, "n"]:
+    """How far the swinging foot must be lifted, meters, so that its sole clears the ground."""
+    sole = sole_in_air(body.foot, ankle[:, 1], pitch, bend)
+    points = np.stack([sole.heel, sole.ball, sole.toe], axis=1)
+    x = ankle[:, None, 0] + points[..., 0] * np.sin(heading)[:, None]
+    z = ankle[:, None, 2] + points[..., 0] * np.cos(heading)[:, None]
+    lowest = (points[..., 1] - ground.height(x, z)).min(-1)
+    want = CLEARANCE * smoothstep(u / CLEARANCE_RAMP) * smoothstep((1.0 - u) / CLEARANCE_RAMP)
+    short = want - lowest
+    soft = 0.3 * want + 1e-9  # a soft maximum: no corner where the lift begins
+    return 0.5 * (short + np.sqrt(short**2 + soft**2))
+
+

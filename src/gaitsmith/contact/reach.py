@@ -1,0 +1,156 @@
+"""Legs stay within their reach: hips come down, rear heels rise, swinging ankles draw near.
+
+The papers place hips and ankles in space and let the knee follow, which asks more of a leg
+than its length for long steps and for bodies of other proportions ([KB92b] errata D3, D4).
+These corrections act on the pose, never on the walk data, so generalization stays exact.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.errors import InfeasibleStepError
+from gaitsmith.geometry.curves import hann_average, running_maximum
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
+    from gaitsmith.body.body import Body, Foot
+    from gaitsmith.contact.foothold import Footholds
+
+#: Hip to ankle over leg length that a bearing leg may reach (7.2 deg of knee flexion).
+REACH = 0.998
+#: The same for the rear foot, which may raise its heel (5.1 deg).
+REAR_REACH = 0.999
+#: Grid on which the lowering is found, and over what part of a step it is spread.
+PER_STEP, SPREAD = 60, 0.12
+#: How much nearer the rear ankle may come by raising its heel, at toe-off, over leg length.
+REAR_SLACK = 0.14
+#: Largest extra rise of the rear heel, radians.
+LARGEST_RAISE = 0.8
+
+
+def lowering(
+    at: Float[np.ndarray, "M"],
+    hip: Float[np.ndarray, "M 2 3"],
+    ankle: Float[np.ndarray, "M 2 3"],
+    slack: Float[np.ndarray, "M 2"],
+    *,
+    leg_length: float,
+) -> Float[np.ndarray, "M"]:
+    """How far the hips must come down at each node, meters, smooth over a quarter of a step.
+
+    Parameters
+    ----------
+    at
+        Walk phase of the nodes.
+    hip, ankle
+        World positions of [left, right].
+    slack
+        Meters by which each ankle may still follow; inf where the foot does not bear.
+    leg_length
+        Thigh + shin, meters.
+
+    Raises
+    ------
+    InfeasibleStepError
+        Where a bearing foot is farther to the side of the hips than the leg is long.
+    """
+    limit = REACH * leg_length
+    across = ((hip - ankle)[..., [0, 2]] ** 2).sum(-1)
+    bears = np.isfinite(slack)
+    lost = bears & (across >= limit**2)
+    if lost.any():
+        node, side = np.argwhere(lost)[0]
+        raise InfeasibleStepError(
+            step=int(at[node]),
+            side=("left", "right")[side],
+            needed=float(np.sqrt(across[node, side])),
+            available=limit,
+            why="the foot would be farther from the hips than the leg reaches",
+        )
+    top = np.sqrt(np.maximum(limit**2 - across, 0.0)) + ankle[..., 1] - hip[..., 1]
+    need = np.maximum(0.0, -np.where(bears, top + np.where(bears, slack, 0.0), np.inf).min(-1))
+    if not need.any():
+        return np.zeros(len(at))
+    first, last = at[0] * PER_STEP, at[-1] * PER_STEP
+    cells = np.zeros(int(np.ceil(last - first)) + 2)
+    where = at * PER_STEP - first
+    for cell in (np.floor(where).astype(int), np.ceil(where).astype(int)):
+        np.maximum.at(cells, cell, need)
+    half = int(np.ceil(SPREAD * PER_STEP))
+    smooth = hann_average(running_maximum(cells, half), half)
+    grid = np.arange(len(cells), dtype=np.float64)
+    return _cubic(grid, smooth, where)
+
+
+def _cubic(
+    grid: Float[np.ndarray, "n"], values: Float[np.ndarray, "n"], where: Float[np.ndarray, "m"]
+) -> Float[np.ndarray, "m"]:
+    """Catmull-Rom on a unit grid."""
+    i = np.clip(where.astype(int), 0, len(grid) - 2)
+    slope = np.gradient(values)
+    u = where - i
+    v = 1.0 - u
+    rise = values[i + 1] - values[i]
+    return values[i] + u * u * (3.0 - 2.0 * u) * rise + u * v * (v * slope[i] - u * slope[i + 1])
+
+
+def raised_heel(
+    foot: Foot,
+    stand: Footholds,
+    hip: Float[np.ndarray, "n 3"],
+    pitch: Float[np.ndarray, "n"],
+    meta: Float[np.ndarray, "n"],
+    *,
+    leg_length: float,
+) -> Float[np.ndarray, "n"]:
+    """How much farther the rear foot must raise its heel to stay in reach, radians >= 0.
+
+    [KB92a] section 5.2 proposes the raise. The first angle that fits is taken: searched on
+    a grid, then bisected. 0 where the leg reaches, the largest where nothing fits.
+    """
+    limit = REAR_REACH * leg_length
+    extra = np.zeros(len(pitch))
+
+    def too_far(more: Float[np.ndarray, "k"], which: Bool[np.ndarray, "n"]) -> Bool[np.ndarray, "k"]:
+        ankle = stand.at(which).ankle(foot, np.minimum(pitch[which] - more, -1e-9), meta[which])
+        return ((ankle - hip[which]) ** 2).sum(-1) > limit**2
+
+    far = too_far(extra, np.ones(len(pitch), dtype=np.bool_))
+    if not far.any():
+        return extra
+    low, high = np.zeros(int(far.sum())), np.full(int(far.sum()), LARGEST_RAISE)
+    open_ = np.ones(len(low), dtype=np.bool_)
+    for angle in np.linspace(0.0, LARGEST_RAISE, 41)[1:]:
+        fits = open_ & ~too_far(np.full(len(low), angle), far)
+        high[fits] = angle
+        open_ &= ~fits
+        low[open_] = angle
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        beyond = too_far(middle, far)
+        low, high = np.where(beyond, middle, low), np.where(beyond, high, middle)
+    extra[far] = high
+    return extra
+
+
+def drawn_near(
+    hip: Float[np.ndarray, "n 3"],
+    ankle: Float[np.ndarray, "n 3"],
+    weight: Float[np.ndarray, "n"],
+    body: Body,
+) -> Float[np.ndarray, "n 3"]:
+    """Ankles of a swinging foot brought within reach of the hips, along the leg.
+
+    The distance becomes a soft minimum (4 mm) of itself and the limit, where ``weight`` is 1;
+    0 leaves the ankle where it is.
+    """
+    limit, soft = REACH * body.leg_length, 0.004
+    line = ankle - hip
+    distance = np.linalg.norm(line, axis=-1)
+    over = (distance - limit) / soft
+    less = soft * np.where(over > 30.0, over, np.log1p(np.exp(np.minimum(over, 30.0))))
+    return ankle - line * (weight * less / np.maximum(distance, 1e-12))[:, None]

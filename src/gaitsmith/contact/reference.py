@@ -1,0 +1,205 @@
+"""What a walker proposes for one step, and the proposals of a whole walk side by side."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith._checks import frozen_array
+from gaitsmith.errors import InvalidInputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jaxtyping import Bool, Float, Int
+
+#: Fields of a ReferenceStep that are sampled on its phases, with their shape after (T,).
+CURVES: dict[str, tuple[int | None, ...]] = {
+    "center": (3,),
+    "heading": (),
+    "pelvis": (3,),
+    "ankle": (2, 3),
+    "foot_heading": (2,),
+    "pitch": (2,),
+    "meta": (2,),
+    "bend": (2,),
+    "upper": (None, 3),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class ReferenceStep:
+    """One step as a walker proposes it, before the feet meet the ground.
+
+    World frame, meters and radians; side axes are [left, right]. T samples share ``phase``,
+    which holds the event at ``toe_off``.
+
+    Attributes
+    ----------
+    stance
+        Side that bears through the whole step.
+    toe_off
+        Phase at which the swing foot leaves its foothold; 1 or more: it stays (standing).
+    foothold, foothold_heading
+        ``(2, 3)``, ``(2,)``: N and heading where each foot stands as the step begins.
+    target, target_heading
+        ``(3,)``, radians: where the swing foot lands at phase 1.
+    phase
+        ``(T,)`` from 0 to 1.
+    center, heading, pelvis
+        ``(T, 3)`` mid-point of the hips; ``(T,)`` heading of the walk, unwrapped; ``(T, 3)``
+        rotation vector of the pelvis in the heading's frame.
+    ankle
+        ``(T, 2, 3)``; where a foot bears, the contact stage replaces it.
+    foot_heading
+        ``(T, 2)``, unwrapped.
+    pitch, meta, bend
+        ``(T, 2)`` sole pitch, toes against the floor, toes against the sole, as in
+        :class:`gaitsmith.walk.model.SagittalStep`, against the foothold's plane.
+    upper
+        ``(T, U, 3)`` local rotation vectors of the upper body's joints.
+    """
+
+    stance: int
+    toe_off: float
+    foothold: Float[np.ndarray, "2 3"]
+    foothold_heading: Float[np.ndarray, "2"]
+    target: Float[np.ndarray, "3"]
+    target_heading: float
+    phase: Float[np.ndarray, "T"]
+    center: Float[np.ndarray, "T 3"]
+    heading: Float[np.ndarray, "T"]
+    pelvis: Float[np.ndarray, "T 3"]
+    ankle: Float[np.ndarray, "T 2 3"]
+    foot_heading: Float[np.ndarray, "T 2"]
+    pitch: Float[np.ndarray, "T 2"]
+    meta: Float[np.ndarray, "T 2"]
+    bend: Float[np.ndarray, "T 2"]
+    upper: Float[np.ndarray, "T U 3"]
+
+    def __post_init__(self) -> None:
+        """Copy, check and freeze the arrays."""
+        n = len(self.phase)
+        shapes: dict[str, tuple[int | None, ...]] = {
+            "foothold": (2, 3),
+            "foothold_heading": (2,),
+            "target": (3,),
+            "phase": (n,),
+            **{name: (n, *shape) for name, shape in CURVES.items()},
+        }
+        for name, shape in shapes.items():
+            object.__setattr__(self, name, frozen_array(name, getattr(self, name), shape))
+        if self.phase[0] != 0.0 or self.phase[-1] != 1.0 or (np.diff(self.phase) <= 0.0).any():
+            raise InvalidInputError("phase must rise from 0 to 1 without repeating")
+        if self.toe_off < 1.0 and self.toe_off not in self.phase:
+            raise InvalidInputError("phase must hold toe_off, so that the foot leaves on a sample")
+
+    def with_(self, **changes: object) -> ReferenceStep:
+        """Copy with some fields replaced; the copy is checked again."""
+        return replace(self, **changes)  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True, eq=False)
+class SwingEnd:
+    """The swing foot of each of S steps at one instant, as proposed."""
+
+    ankle: Float[np.ndarray, "S 3"]
+    heading: Float[np.ndarray, "S"]
+    pitch: Float[np.ndarray, "S"]
+
+    @staticmethod
+    def of(steps: Sequence[ReferenceStep], *, at_end: bool) -> SwingEnd:
+        """Read it off the steps' own samples."""
+        picks = [
+            (s, len(s.phase) - 1 if at_end else int(np.searchsorted(s.phase, min(s.toe_off, 1.0))))
+            for s in steps
+        ]
+        return SwingEnd(
+            ankle=np.stack([s.ankle[i, 1 - s.stance] for s, i in picks]),
+            heading=np.array([s.foot_heading[i, 1 - s.stance] for s, i in picks]),
+            pitch=np.array([s.pitch[i, 1 - s.stance] for s, i in picks]),
+        )
+
+
+@dataclass(eq=False)
+class Proposal:
+    """The proposals of S steps on one axis of M nodes; the contact stage works on this.
+
+    The end of a step and the start of the next are one node, taken from the next.
+
+    Attributes
+    ----------
+    at
+        ``(M,)`` walk phase: index of the step plus its phase.
+    phase
+        ``(M,)`` phase within the step, as proposed (``at - step`` would round it over the
+        events); 1 at the very last node.
+    step
+        ``(M,)`` index of the step.
+    curves
+        The fields of :data:`CURVES`, ``(M, ...)``, writable.
+    stance, toe_off, foothold, foothold_heading, target, target_heading
+        ``(S, ...)`` of each step.
+    leaving, landing
+        The swing foot as each step proposes it at its own toe-off and end.
+    """
+
+    at: Float[np.ndarray, "M"]
+    phase: Float[np.ndarray, "M"]
+    step: Int[np.ndarray, "M"]
+    curves: dict[str, Float[np.ndarray, "M ..."]]
+    stance: Int[np.ndarray, "S"]
+    toe_off: Float[np.ndarray, "S"]
+    foothold: Float[np.ndarray, "S 2 3"]
+    foothold_heading: Float[np.ndarray, "S 2"]
+    target: Float[np.ndarray, "S 3"]
+    target_heading: Float[np.ndarray, "S"]
+    leaving: SwingEnd
+    landing: SwingEnd
+
+    def bearing(self) -> Bool[np.ndarray, "M 2"]:
+        """Whether each foot stands on its foothold."""
+        return bearing(self.stance, self.toe_off, self.step, self.phase)
+
+
+def bearing(
+    stance: Int[np.ndarray, "S"],
+    toe_off: Float[np.ndarray, "S"],
+    step: Int[np.ndarray, "n"],
+    phase: Float[np.ndarray, "n"],
+) -> Bool[np.ndarray, "n 2"]:
+    """Whether [left, right] stand on their footholds at ``phase`` of ``step``."""
+    down = np.ones((len(step), 2), dtype=np.bool_)
+    swing = 1 - stance[step]
+    down[np.arange(len(step)), swing] = phase <= toe_off[step]
+    return down
+
+
+def stack(steps: Sequence[ReferenceStep]) -> Proposal:
+    """Put the proposals of consecutive steps on one axis."""
+    if not steps:
+        raise InvalidInputError("a walk needs at least one step")
+    last = len(steps) - 1
+
+    def joined(name: str) -> Float[np.ndarray, "M ..."]:
+        parts = [getattr(s, name)[: None if i == last else -1] for i, s in enumerate(steps)]
+        return np.concatenate(parts)
+
+    counts = [len(s.phase) - (i != last) for i, s in enumerate(steps)]
+    index = np.repeat(np.arange(len(steps)), counts)
+    return Proposal(
+        at=joined("phase") + index,
+        phase=joined("phase"),
+        step=index,
+        curves={name: joined(name) for name in CURVES},
+        stance=np.array([s.stance for s in steps]),
+        toe_off=np.array([s.toe_off for s in steps]),
+        foothold=np.stack([s.foothold for s in steps]),
+        foothold_heading=np.stack([s.foothold_heading for s in steps]),
+        target=np.stack([s.target for s in steps]),
+        target_heading=np.array([s.target_heading for s in steps]),
+        leaving=SwingEnd.of(steps, at_end=False),
+        landing=SwingEnd.of(steps, at_end=True),
+    )

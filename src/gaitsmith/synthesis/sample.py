@@ -1,0 +1,72 @@
+"""A prepared walk at a frame rate: the Motion with all its labels."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith._checks import positive
+from gaitsmith.body.rig import skeleton_of
+from gaitsmith.contact.apply import local_legs
+from gaitsmith.conventions import SIDES
+from gaitsmith.geometry.rotations import exp, sign_continuous
+from gaitsmith.motion.motion import Labels, Motion
+from gaitsmith.synthesis.upper_body import upper_joints
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.ground import Ground
+    from gaitsmith.synthesis.step import PreparedWalk
+
+
+def sample_walk(
+    walk: PreparedWalk, body: Body, ground: Ground, *, fps: float, recipe: dict[str, Any]
+) -> Motion:
+    """Sample ``walk`` at ``fps`` frames per second from its first instant.
+
+    The last frame is the last one that is not after the end of the walk. Everything is
+    evaluated for all frames at once.
+    """
+    fps = positive("fps", fps, "frames per second")
+    frames = int(np.floor(walk.duration * fps + 1e-6)) + 1
+    times = np.arange(frames) / fps
+    poses = walk.poses(np.minimum(times, walk.duration))
+    skeleton = skeleton_of(body)
+    rotations = np.zeros((frames, len(skeleton), 4))
+    rotations[..., 3] = 1.0
+    rotations[:, 0] = poses.pelvis
+    legs = local_legs(poses)
+    for side, name in enumerate(SIDES):
+        for part, turned in legs.items():
+            rotations[:, skeleton.index(f"{name}{part}")] = turned[:, side]
+    upper = [skeleton.index(name) for name in upper_joints(body)]
+    rotations[:, upper] = exp(poses.upper)
+    return Motion(
+        skeleton=skeleton,
+        root_position=poses.center,
+        rotations=sign_continuous(rotations),
+        fps=fps,
+        contacts=poses.contacts,
+        labels=_labels(walk, ground, times, recipe),
+    )
+
+
+def _labels(walk: PreparedWalk, ground: Ground, times: np.ndarray, recipe: dict[str, Any]) -> Labels:
+    plan = walk.plan
+    step, phase = walk.clock.position(times)
+    landed = times >= walk.clock.starts[-1] - 1e-9
+    return Labels(
+        phase=np.where(landed, 1.0, phase),
+        step=np.minimum(step + 2, len(plan.side) - 1),
+        footstep_side=plan.side,
+        footstep_position=plan.position,
+        footstep_heading=plan.heading,
+        footstep_time=plan.time,
+        ground=json.dumps(ground.as_json(), sort_keys=True),
+        recipe=json.dumps(recipe, sort_keys=True),
+        path=plan.path,
+    )

@@ -1,0 +1,154 @@
+"""Seam 2: plan one step, then show any instant of it; and whole walks made of such steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
+
+import numpy as np
+
+from gaitsmith.contact import plan_contact
+from gaitsmith.synthesis.clock import Clock
+from gaitsmith.synthesis.join import join_speeds
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jaxtyping import Float
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.contact import ContactPlan, Poses, ReferenceStep
+    from gaitsmith.ground import Ground
+    from gaitsmith.plan.footsteps import PlannedStep, StepPlan
+
+
+@dataclass(frozen=True)
+class WalkerState:
+    """What a step inherits from the one before.
+
+    Attributes
+    ----------
+    hip_height
+        Height of the hips over the stance foot's floor as the last step left them, before any
+        correction, meters; None at the start of a walk.
+    """
+
+    hip_height: float | None = None
+
+
+@runtime_checkable
+class PreparedStep(Protocol):
+    """One step, planned to the end and ready to be looked at.
+
+    Everything costly happened in ``prepare``; ``poses`` is O(1) per phase, pure, and may be
+    called in any order: the same object serves a film renderer, which asks for all phases at
+    once, and a browser that skips frames ([KB93] section 3).
+    """
+
+    duration: float
+    end: WalkerState
+    reference: ReferenceStep
+
+    def poses(self, phases: Float[np.ndarray, "n"]) -> Poses:
+        """Poses at normalized times ``phases``: 0 starts the step, 1 ends it.
+
+        The step stands alone here: its legs are kept in reach and its feet on the ground
+        without regard to its neighbors. :class:`PreparedWalk` regards them.
+        """
+        ...
+
+
+@runtime_checkable
+class StepGenerator(Protocol):
+    """A way of stepping: straight walk, curved walk, elevation walk, sidestep, turnaround."""
+
+    def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
+        """Plan one step from ``state``; raise InfeasibleStepError if impossible."""
+        ...
+
+
+@dataclass(eq=False)
+class TabledStep:
+    """A prepared step that is its reference curves: what every generator here returns."""
+
+    duration: float
+    end: WalkerState
+    reference: ReferenceStep
+    body: Body
+    ground: Ground
+    _plan: ContactPlan | None = None
+
+    def poses(self, phases: Float[np.ndarray, "n"]) -> Poses:
+        """See :meth:`PreparedStep.poses`."""
+        if self._plan is None:
+            self._plan = plan_contact([self.reference], self.body, self.ground)
+        return self._plan.poses(np.asarray(phases, dtype=np.float64))
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedWalk:
+    """Steps, their common contact plan and the clock: a walk that can be looked at any time."""
+
+    plan: StepPlan
+    contact: ContactPlan
+    clock: Clock
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return self.clock.duration
+
+    def poses(self, times: Float[np.ndarray, "F"]) -> Poses:
+        """Poses at ``times`` in seconds, in [0, duration], in any order."""
+        return self.contact.poses(self.clock.walk_phase(times))
+
+
+def prepare_walk(
+    plan: StepPlan,
+    generator: StepGenerator,
+    body: Body,
+    ground: Ground,
+    *,
+    rest: float = 0.0,
+) -> PreparedWalk:
+    """Plan every step of ``plan``, join them and put the feet on the ground.
+
+    ``rest`` seconds of standing follow a walk that ends in standing.
+    """
+    state, prepared = WalkerState(), []
+    for step in plan.steps():
+        done = generator.prepare(body, state, step)
+        prepared.append(done)
+        state = done.end
+    clock = Clock.of(plan, rest=rest if plan.kinds[-1] == "stop" else 0.0)
+    references = join_speeds([p.reference for p in prepared])
+    if plan.kinds[-1] == "stop":
+        references.append(_stand_still(references[-1]))
+    return PreparedWalk(plan, plan_contact(references, body, ground), clock)
+
+
+def _stand_still(last: ReferenceStep) -> ReferenceStep:
+    """A step in which nothing moves, from the end of ``last``."""
+    swing = 1 - last.stance
+    foothold, heading = np.array(last.foothold), np.array(last.foothold_heading)
+    foothold[swing], heading[swing] = last.target, last.target_heading
+
+    def still(values: Sequence[float] | Float[np.ndarray, "T ..."]) -> Float[np.ndarray, "2 ..."]:
+        return np.stack([np.asarray(values)[-1]] * 2)
+
+    none = np.zeros((2, 2))
+    return last.with_(
+        toe_off=1.0,
+        foothold=foothold,
+        foothold_heading=heading,
+        phase=np.array([0.0, 1.0]),
+        center=still(last.center),
+        heading=still(last.heading),
+        pelvis=still(last.pelvis),
+        ankle=still(last.ankle),
+        foot_heading=still(last.foot_heading),
+        pitch=none,
+        meta=none,
+        bend=none,
+        upper=still(last.upper),
+    )

@@ -1,0 +1,153 @@
+"""Any straight-line walk along a straight plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.contact import ReferenceStep
+from gaitsmith.conventions import UP, ahead, leftward
+from gaitsmith.errors import InvalidInputError
+from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
+from gaitsmith.synthesis.upper_body import Manner, Overlay, rule_overlay
+from gaitsmith.walk.model import SagittalStep, StepRequest, StraightWalk
+
+if TYPE_CHECKING:
+    from gaitsmith.body.body import Body
+    from gaitsmith.ground import Ground
+    from gaitsmith.plan.footsteps import Footstep, PlannedStep
+
+#: Footsteps farther than this from one line, meters or radians, are not a straight walk.
+STRAIGHT = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """The line a step walks along: a point of it, its direction and its left."""
+
+    here: np.ndarray
+    ahead: np.ndarray
+    left: np.ndarray
+
+    @staticmethod
+    def of(step: PlannedStep) -> _Line:
+        """Half way between the lines of the left and of the right feet."""
+        line = _Line(step.stance.position, ahead(step.stance.direction), leftward(step.stance.direction))
+        middle = 0.5 * line.aside(step.target)
+        if step.stance.direction != step.target.direction or (
+            abs(line.aside(step.target) - line.aside(step.origin)) > STRAIGHT
+        ):
+            raise InvalidInputError(
+                f"step {step.index} is not straight: its footsteps turn or leave their line; a "
+                "straight walk needs footsteps of one direction on two parallel lines"
+            )
+        return _Line(line.here + middle * line.left, line.ahead, line.left)
+
+    def along(self, foot: Footstep) -> float:
+        """How far ahead of the stance foot, meters."""
+        return float((foot.position - self.here) @ self.ahead)
+
+    def aside(self, foot: Footstep) -> float:
+        """How far to the left of the line, meters."""
+        return float((foot.position - self.here) @ self.left)
+
+
+class StraightGenerator:
+    """Walks straight plans with any :class:`~gaitsmith.walk.model.StraightWalk`.
+
+    Parameters
+    ----------
+    walk
+        Gives hips and feet in the sagittal plane.
+    ground
+        Where the footsteps lie.
+    manner
+        The rules above the legs.
+
+    Notes
+    -----
+    What [KB92a] calls the degenerate case: on a straight line the curved walk must give the
+    same poses.
+    """
+
+    def __init__(self, walk: StraightWalk, ground: Ground, manner: Manner | None = None) -> None:
+        self._walk, self._ground, self._manner = walk, ground, manner or Manner()
+        self._drawn = lru_cache(maxsize=512)(self._draw)
+
+    def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
+        """See :meth:`gaitsmith.synthesis.step.StepGenerator.prepare`."""
+        line = _Line.of(step)
+        length = line.along(step.target)
+        rise = float(step.target.position[1] - step.stance.position[1])
+        request = StepRequest(
+            side=step.stance.side,
+            previous_length=-line.along(step.origin),
+            length=length,
+            next_length=line.along(step.following) - length if step.following else 0.0,
+            duration=step.duration,
+            rise=rise,
+            hip_height=state.hip_height,
+            kind=step.kind,
+        )
+        sagittal, overlay = self._drawn(body, _rounded(request))
+        reference = _in_world(step, line, sagittal, overlay)
+        end = WalkerState(hip_height=float(sagittal.center[-1, 1]) - rise)
+        return TabledStep(step.duration, end, reference, body, self._ground)
+
+    def _draw(self, body: Body, request: StepRequest) -> tuple[SagittalStep, Overlay]:
+        sagittal = self._walk.step(body, request)
+        return sagittal, rule_overlay(body, request, sagittal, self._manner)
+
+
+def _rounded(request: StepRequest) -> StepRequest:
+    """Lengths to a picometer, so that equal steps are recognized and drawn once."""
+    values = {
+        name: round(value, 12)
+        for name in ("previous_length", "length", "next_length", "duration", "rise", "hip_height")
+        if (value := getattr(request, name)) is not None
+    }
+    return StepRequest(side=request.side, kind=request.kind, **{"hip_height": None, **values})
+
+
+def _in_world(
+    step: PlannedStep, line: _Line, sagittal: SagittalStep, overlay: Overlay
+) -> ReferenceStep:
+    """Put a sagittal step on its line."""
+    stance, swing = step.stance.side, 1 - step.stance.side
+    count = len(sagittal.phase)
+
+    def world(points: np.ndarray, aside: np.ndarray | float) -> np.ndarray:
+        side = np.broadcast_to(aside, (count,))[:, None]
+        return line.here + points[:, :1] * line.ahead + points[:, 1:] * UP + side * line.left
+
+    ankle = np.empty((count, 2, 3))
+    ankle[:, stance] = world(sagittal.ankle[:, 0], line.aside(step.stance))
+    ankle[:, swing] = world(sagittal.ankle[:, 1], line.aside(step.target))
+    by_side = [0, 1] if stance == 0 else [1, 0]  # (stance, swing) to (left, right)
+    heading = np.empty((count, 2))
+    heading[:, stance], heading[:, swing] = step.stance.heading, step.target.heading
+    foothold = np.empty((2, 3))
+    foothold[stance], foothold[swing] = step.stance.position, step.origin.position
+    standing = np.empty(2)
+    standing[stance], standing[swing] = step.stance.heading, step.origin.heading
+    return ReferenceStep(
+        stance=stance,
+        toe_off=sagittal.toe_off,
+        foothold=foothold,
+        foothold_heading=standing,
+        target=step.target.position,
+        target_heading=step.target.heading,
+        phase=sagittal.phase,
+        center=world(sagittal.center, overlay.sway),
+        heading=np.full(count, step.stance.direction),
+        pelvis=overlay.pelvis,
+        ankle=ankle,
+        foot_heading=heading,
+        pitch=sagittal.pitch[:, by_side],
+        meta=sagittal.meta[:, by_side],
+        bend=sagittal.bend[:, by_side],
+        upper=overlay.upper,
+    )

@@ -1,0 +1,195 @@
+"""What moves above the legs, by rule, for a walk that brings no whole-body Cycle.
+
+The papers leave it open: the arm swing is "a kinematic function that depends on the leg
+movement" ([KB92b] section 6). The rules and their sizes here are from published measurements
+of walking; sources stand at the constants. Everything is a function of the step's phase, its
+amplitude follows the step lengths, so starts and stops ease by themselves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.body.rig import spine_names
+from gaitsmith.conventions import SIDE_SIGN, SIDES
+from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.geometry.rotations import about, exp, inverse, log, multiply
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.walk.model import SagittalStep, StepRequest
+
+
+@dataclass(frozen=True)
+class Manner:
+    """Sizes of the rules. Angles in radians at a step of :attr:`usual` leg lengths.
+
+    Attributes
+    ----------
+    usual
+        Step length over leg length at which the sizes hold; they grow in proportion.
+    pelvis_rotation
+        Half of the range: 8.9 deg at free speed (Schwartz 2008), own side forward at heel strike.
+    pelvis_list
+        Half of the range: 8.2 deg (Schwartz 2008), swing side lowest at 15-18 % of the stride.
+    pelvis_tilt, lean
+        Forward tilt of the pelvis and lean of the trunk while walking (1-5 deg, 1.2-1.6 m/s).
+    thorax_rotation
+        Half of the range against the pelvis: 9-14 deg at natural cadence (CMU 07, computed).
+    thorax_list
+        Lean of the thorax over the stance leg, half of the range.
+    sway
+        Half of the lateral path of the pelvis over the hip width: 4-6 cm in all at 1.2-1.7 m/s.
+    arm_swing
+        Swing of the upper arm over the mean swing of both legs, opposite to its own leg.
+    arm_middle, arm_apart
+        Mean flexion and abduction of the upper arms.
+    elbow, elbow_swing
+        Flexion with the arm at its middle; more of it per radian of forward swing (24-35 deg
+        in the mean, 20-39 deg range at 0.9-1.9 m/s).
+    head_pitch
+        Nose down, radians per meter the hips rise: the gaze stays on a point ahead.
+    pelvis, arms
+        Switch the pelvis and trunk layer, and the arm swing, off.
+    """
+
+    usual: float = 0.85
+    pelvis_rotation: float = float(np.radians(4.5))
+    pelvis_list: float = float(np.radians(4.0))
+    pelvis_tilt: float = float(np.radians(1.5))
+    lean: float = float(np.radians(2.5))
+    thorax_rotation: float = float(np.radians(4.5))
+    thorax_list: float = float(np.radians(1.0))
+    sway: float = 0.13
+    arm_swing: float = 0.62
+    arm_middle: float = float(np.radians(-3.0))
+    arm_apart: float = float(np.radians(9.0))
+    elbow: float = float(np.radians(20.0))
+    elbow_swing: float = 0.55
+    head_pitch: float = 0.8
+    pelvis: bool = True
+    arms: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """What is laid over a sagittal step, relative to the heading.
+
+    Attributes
+    ----------
+    sway
+        ``(T,)`` the hips to the left, meters.
+    pelvis
+        ``(T, 3)`` rotation vector of the pelvis in the heading's frame.
+    upper
+        ``(T, U, 3)`` local rotation vectors, in the order of :func:`upper_joints`.
+    """
+
+    sway: Float[np.ndarray, "T"]
+    pelvis: Float[np.ndarray, "T 3"]
+    upper: Float[np.ndarray, "T U 3"]
+
+
+def upper_joints(body: Body) -> tuple[str, ...]:
+    """Names of the joints above the pelvis, in the order of ``Overlay.upper``."""
+    arms = ("Shoulder", "UpperArm", "LowerArm", "Hand")
+    return (
+        *spine_names(body.spine_segments),
+        "neck",
+        "head",
+        *(f"{side}{part}" for side in SIDES for part in arms),
+    )
+
+
+def rule_overlay(body: Body, request: StepRequest, step: SagittalStep, manner: Manner) -> Overlay:
+    """Pelvis, trunk, head and arms of one step, by rule.
+
+    Amplitudes run from the previous step's to this step's, so that steps of any length join;
+    all is zero in standing.
+    """
+    p, s = step.phase, float(SIDE_SIGN[request.side])
+    e0 = 0.0 if request.kind == "start" else request.previous_length / body.leg_length
+    e1 = 0.0 if request.kind == "stop" else request.length / body.leg_length
+    e0, e1 = e0 / manner.usual, e1 / manner.usual
+    on = 1.0 if manner.pelvis else 0.0
+    ease = smoothstep(p)
+    envelope = e0 + (e1 - e0) * ease
+
+    # antiperiodic in the step: what one side does now the other does in the next
+    turn = -s * (e0 - (e0 + e1) * 0.5 * (1.0 - np.cos(np.pi * p)))
+    tip = s * envelope * np.sin(np.pi * p) * (1.0 + 0.5 * np.sin(2.0 * np.pi * p))
+    sway = s * manner.sway * body.hip_width * _sway(p, request.kind, e0, e1)
+    pelvis = on * np.stack(
+        [manner.pelvis_tilt * envelope, manner.pelvis_rotation * turn, manner.pelvis_list * tip],
+        axis=-1,
+    )
+    thorax = on * np.stack(
+        [
+            manner.lean * envelope,
+            -manner.thorax_rotation * turn,
+            -manner.thorax_list * tip,
+        ],
+        axis=-1,
+    )
+    chord = step.center[0, 1] + (step.center[-1, 1] - step.center[0, 1]) * p
+    nod = np.zeros_like(pelvis)
+    nod[:, 0] = on * manner.head_pitch * (step.center[:, 1] - chord)
+
+    pelvis_q, thorax_q, head_q = exp(pelvis), exp(thorax), exp(nod)
+    n = body.spine_segments
+    spine = log(multiply(inverse(pelvis_q), thorax_q)) / n
+    neck = 0.5 * log(multiply(inverse(thorax_q), head_q))
+    swing = _arm_swing(request.side, step, manner)
+    arms = [_arm(side, swing[:, side], manner) for side in (0, 1)]
+    upper = np.stack([*[spine] * n, neck, neck, *arms[0], *arms[1]], axis=1)
+    return Overlay(sway=on * sway, pelvis=pelvis, upper=upper)
+
+
+def _sway(p: Float[np.ndarray, "T"], kind: str, e0: float, e1: float) -> Float[np.ndarray, "T"]:
+    """Lateral path of the hips towards the stance foot; 1 is the steady amplitude.
+
+    Nearly the same at all step lengths. Before the first foot can leave the ground the weight
+    must be over the other one, so a start shifts early and far (human-facts G1, G4).
+    """
+
+    def size(e: float) -> float:
+        return float(np.tanh(3.0 * e))
+
+    steady = np.sin(np.pi * (p - 0.06))
+    if kind == "start":
+        shift = 1.35 * size(e1) * smoothstep(p / 0.30)
+        later = smoothstep((p - 0.30) / 0.60)
+        return (1.0 - later) * shift + later * size(e1) * steady
+    return (size(e0) + (size(e1) - size(e0)) * smoothstep(p)) * steady
+
+
+def _arm_swing(side: int, step: SagittalStep, manner: Manner) -> Float[np.ndarray, "T 2"]:
+    """Forward swing of the [left, right] upper arm about its middle, radians."""
+    ahead_of_hips = step.ankle[..., 0] - step.center[:, None, 0]
+    below = np.maximum(step.center[:, None, 1] - step.ankle[..., 1], 1e-6)
+    leg = np.arctan2(ahead_of_hips, below)  # (T, 2) stance, swing
+    mean = 0.5 * (leg[:, 0] - leg[:, 1]) * (manner.arm_swing if manner.arms else 0.0)
+    out = np.empty((len(mean), 2))
+    out[:, side], out[:, 1 - side] = -mean, mean
+    return out
+
+
+def _arm(
+    side: int, swing: Float[np.ndarray, "T"], manner: Manner
+) -> list[Float[np.ndarray, "T 3"]]:
+    """Rotation vectors of shoulder, upper arm, forearm and hand of one side."""
+    s = float(SIDE_SIGN[side])
+    hang = about("z", -s * (0.5 * np.pi - manner.arm_apart))
+    forward = about("x", -(manner.arm_middle + swing))
+    upper = log(multiply(forward, hang))
+    still = np.zeros((len(swing), 3))
+    # the elbow follows the forward swing; the soft maximum keeps it smooth at the middle
+    soft = 0.5 * (swing + np.sqrt(swing**2 + 0.15**2))
+    forearm = np.zeros((len(swing), 3))
+    forearm[:, 1] = -s * (manner.elbow + manner.elbow_swing * soft)
+    return [still, upper, forearm, still]
