@@ -1,1 +1,101 @@
-"""Give it a body, a place to go, a ground and a way of walking; get a person who walks it."""
+"""Give it a body, a place to go, a ground and a way of walking; get a person who walks it.
+
+>>> import gaitsmith
+>>> motion = gaitsmith.walk(distance=5, body=1.75)
+>>> gaitsmith.save(motion, "walk.bvh")  # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from gaitsmith._version import __version__
+    from gaitsmith.body.body import Body, Foot
+    from gaitsmith.body.presets import BODIES, body_from
+    from gaitsmith.errors import (
+        FileFormatError,
+        GaitsmithError,
+        GaitsmithWarning,
+        InfeasibleError,
+        InvalidInputError,
+    )
+    from gaitsmith.gait.cycle import Cycle
+    from gaitsmith.ground import GROUNDS, Ground
+    from gaitsmith.io import load
+    from gaitsmith.motion.motion import Labels, Markers, Motion
+    from gaitsmith.motion.skeleton import Skeleton
+    from gaitsmith.pipeline import regenerate, save, save_all, walk
+    from gaitsmith.synthesis.upper_body import Manner
+    from gaitsmith.walk import WALKS, StraightWalk
+
+#: Where each public name lives. They load when first asked for, so that importing the package
+#: and asking the command line for help cost nothing.
+_HOMES = {
+    "__version__": "_version",
+    "BODIES": "body.presets",
+    "Body": "body.body",
+    "body_from": "body.presets",
+    "Cycle": "gait.cycle",
+    "FileFormatError": "errors",
+    "Foot": "body.body",
+    "GaitsmithError": "errors",
+    "GaitsmithWarning": "errors",
+    "Ground": "ground",
+    "GROUNDS": "ground",
+    "InfeasibleError": "errors",
+    "InvalidInputError": "errors",
+    "Labels": "motion.motion",
+    "load": "io",
+    "Manner": "synthesis.upper_body",
+    "Markers": "motion.motion",
+    "Motion": "motion.motion",
+    "regenerate": "pipeline",
+    "save": "pipeline",
+    "save_all": "pipeline",
+    "Skeleton": "motion.skeleton",
+    "StraightWalk": "walk",
+    "walk": "pipeline",
+    "WALKS": "walk",
+}
+
+__all__ = [
+    "__version__",
+    "BODIES",
+    "Body",
+    "body_from",
+    "Cycle",
+    "FileFormatError",
+    "Foot",
+    "GaitsmithError",
+    "GaitsmithWarning",
+    "Ground",
+    "GROUNDS",
+    "InfeasibleError",
+    "InvalidInputError",
+    "Labels",
+    "load",
+    "Manner",
+    "Markers",
+    "Motion",
+    "regenerate",
+    "save",
+    "save_all",
+    "Skeleton",
+    "StraightWalk",
+    "walk",
+    "WALKS",
+]
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'gaitsmith' has no attribute {name!r}")
+    value = getattr(import_module(f"gaitsmith.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -9,6 +9,8 @@ GaitsmithError
 │   └── InfeasibleSpeedError                nobody walks that fast
 ├── FileFormatError                         a file is not what it claims to be
 └── MissingDependencyError (also ImportError)
+
+GaitsmithWarning (a UserWarning)            done, but look at it
 """
 
 from __future__ import annotations
@@ -100,3 +102,7 @@ class FileFormatError(GaitsmithError):
 
 class MissingDependencyError(GaitsmithError, ImportError):
     """An optional dependency is not installed; the message says which extra has it."""
+
+
+class GaitsmithWarning(UserWarning):
+    """The task was done, but something about it is unusual."""

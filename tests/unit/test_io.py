@@ -230,6 +230,18 @@ def test_a_file_that_is_no_zip_is_refused(folder):
         read_npz(folder / "missing.npz")
 
 
+def test_a_seek_to_nowhere_is_the_file_s_fault_not_the_disk_s(folder, monkeypatch):
+    """Offsets in a damaged zip end in an OSError that names no file."""
+
+    def seek(*_):
+        raise OSError(22, "Invalid argument")
+
+    write_npz(walking(), folder / "a.npz")
+    monkeypatch.setattr(zipfile.ZipFile, "open", seek)
+    with pytest.raises(FileFormatError, match=r"a\.npz: not a readable npz archive.*Invalid"):
+        read_npz(folder / "a.npz")
+
+
 @pytest.mark.parametrize("field", ["ground", "recipe"])
 def test_labels_that_could_not_be_read_back_are_not_written(folder, field):
     from dataclasses import replace

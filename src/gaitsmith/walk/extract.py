@@ -11,13 +11,14 @@ from gaitsmith.body.body import Body, Foot
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.signals import butterworth_zero_lag
+from gaitsmith.motion.motion import Markers
 from gaitsmith.walk.data import Character, TimedSequence, WalkData
 from gaitsmith.walk.generalize import generalize
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from pathlib import Path
 
-    from gaitsmith.motion.motion import Markers
+    from jaxtyping import Bool, Float
 
 #: Markers that extraction reads. The ball is the fifth metatarsal.
 MARKERS = ("hip", "knee", "ankle", "heel", "ball", "toe")
@@ -34,6 +35,19 @@ class Extraction:
     heel_strikes: tuple[int, int]
     toe_off_frame: int
     step_time: float
+
+
+def read_winter_table(path: Path) -> Markers:
+    """Markers of the sagittal table A.1 of Winter's book as CSV (x, y per marker, meters)."""
+    header = path.read_text(encoding="utf-8").splitlines()[0].split(",")
+    table = np.loadtxt(path, delimiter=",", skiprows=1)
+    time = table[:, header.index("time_s")]
+    positions = np.zeros((len(table), len(MARKERS), 3))
+    for i, name in enumerate(MARKERS):
+        column = "mt5" if name == "ball" else name
+        positions[:, i, 2] = table[:, header.index(f"{column}_x")]
+        positions[:, i, 1] = table[:, header.index(f"{column}_y")]
+    return Markers(MARKERS, positions, (len(time) - 1) / (time[-1] - time[0]))
 
 
 def extract(markers: Markers, body: Body, *, cutoff: float = 6.0) -> Extraction:

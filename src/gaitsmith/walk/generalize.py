@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 #: Longest step over leg length; above it the rear leg cannot reach (measured on five bodies).
 LONGEST_STEP = 1.15
+#: Longest that people take.
+LONG_STEP = 1.05
 #: Smallest angle a mu function returns, radians: generalization divides by them.
 SMALLEST_ANGLE = 0.01
 

@@ -1,0 +1,5 @@
+"""``python -m gaitsmith``."""
+
+from gaitsmith.cli.main import main
+
+main()

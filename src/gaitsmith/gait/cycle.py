@@ -1,0 +1,110 @@
+"""One closed stride of the whole body: the currency of style."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith._checks import frozen_array, positive
+from gaitsmith.errors import InvalidInputError
+from gaitsmith.geometry.curves import hermite
+from gaitsmith.geometry.rotations import sign_continuous
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+    from gaitsmith.motion.skeleton import Skeleton
+
+#: Events of one foot, in the order of ``Cycle.events``.
+EVENTS = ("heel_strike", "foot_flat", "heel_off", "toe_off")
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle:
+    """A straight, level stride from left heel strike to left heel strike that closes on itself.
+
+    Sample ``k`` of K is at ``stride_phase = k / K``; the sample after the last is the first,
+    one stride ahead. The walk heads along +Z.
+
+    Attributes
+    ----------
+    skeleton
+        Whose stride it is; VRM humanoid names.
+    center
+        ``(K, 3)`` root minus uniform travel along +Z: sway, height, and what it runs ahead or
+        behind, meters.
+    rotations
+        ``(K, J, 4)`` local unit quaternions xyzw, the heading taken out of the root's.
+    events
+        ``(2, 4)`` stride phases in [0, 1) of [left, right] x :data:`EVENTS`; the left heel
+        strike is 0.
+    stride_length, duration
+        Meters and seconds of the stride.
+    source, license
+        Where it comes from and what may be done with it.
+    """
+
+    skeleton: Skeleton
+    center: Float[np.ndarray, "K 3"]
+    rotations: Float[np.ndarray, "K joints 4"]
+    events: Float[np.ndarray, "2 4"]
+    stride_length: float
+    duration: float
+    source: str = ""
+    license: str = ""
+
+    def __post_init__(self) -> None:
+        """Copy, check and freeze; signs of quaternions are made continuous."""
+        count, joints = len(self.center), len(self.skeleton)
+        if count < 4:
+            raise InvalidInputError(f"a cycle needs at least 4 samples, got {count}")
+        rotations = frozen_array("rotations", self.rotations, (count, joints, 4))
+        norm = np.linalg.norm(rotations, axis=-1)
+        if np.abs(norm - 1.0).max() > 1e-6:
+            raise InvalidInputError("rotations of a cycle must be unit quaternions")
+        rotations = frozen_array("rotations", sign_continuous(rotations), (count, joints, 4))
+        events = frozen_array("events", self.events, (2, 4))
+        if events[0, 0] != 0.0 or (events < 0.0).any() or (events >= 1.0).any():
+            raise InvalidInputError("events must be stride phases in [0, 1), the first of them 0")
+        since = (events - events[:, :1]) % 1.0
+        if (np.diff(since, axis=1) <= 0.0).any():
+            raise InvalidInputError(
+                "events of a foot must follow each other: heel strike, foot flat, heel off, toe off"
+            )
+        object.__setattr__(self, "center", frozen_array("center", self.center, (count, 3)))
+        object.__setattr__(self, "rotations", rotations)
+        object.__setattr__(self, "events", events)
+        for name, unit in (("stride_length", "meters"), ("duration", "seconds")):
+            object.__setattr__(self, name, positive(name, getattr(self, name), unit))
+
+    def with_(self, **changes: object) -> Cycle:
+        """Copy with some fields replaced; the copy is checked again."""
+        return replace(self, **changes)  # type: ignore[arg-type]
+
+    @property
+    def speed(self) -> float:
+        """Meters per second."""
+        return self.stride_length / self.duration
+
+    def at(
+        self, stride_phase: Float[np.ndarray, "n"]
+    ) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, "n joints 4"]]:
+        """Center offset (meters) and local rotations at any stride phases; period 1.
+
+        Periodic cubic through the samples; exact at them.
+        """
+        count, joints = len(self.center), len(self.skeleton)
+        ends = np.where((self.rotations[-1] * self.rotations[0]).sum(-1) < 0.0, -1.0, 1.0)
+        # two samples of the neighboring strides on both sides give the slopes at the seam
+        before = self.rotations[-2:] * ends[:, None]
+        after = self.rotations[:3] * ends[:, None]
+        quats = np.concatenate([before, self.rotations, after]).reshape(count + 5, -1)
+        center = np.concatenate([self.center[-2:], self.center, self.center[:3]])
+        table = np.concatenate([center, quats], axis=1)
+        grid = np.arange(-2, count + 3) / count
+        slopes = np.gradient(table, 1.0 / count, axis=0)
+        values = hermite(grid, table, slopes, np.asarray(stride_phase, dtype=np.float64) % 1.0)
+        turned = values[:, 3:].reshape(-1, joints, 4)
+        return values[:, :3], turned / np.linalg.norm(turned, axis=-1, keepdims=True)

@@ -1,0 +1,108 @@
+"""Motions to files and back: one table of writers, one of readers, one atomic `save`.
+
+A new format is one module and one line in :data:`WRITERS` or :data:`READERS`. Formats that
+other layers write (pictures) are added by who calls :func:`save`, through ``writers``.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+
+from gaitsmith.errors import UnknownFormatError
+from gaitsmith.io.bvh import write_bvh
+from gaitsmith.io.npz import read_npz, write_npz
+from gaitsmith.io.table import write_csv
+from gaitsmith.motion.motion import Motion
+
+__all__ = ["READERS", "WRITERS", "Reader", "Writer", "load", "save", "save_all"]
+
+#: Writes a Motion in package conventions to a path; units, axes and quaternion order of the
+#: format are its own business. The path has the format's suffix, though not its final name.
+Writer = Callable[[Motion, Path], None]
+#: Reads a file into a Motion in package conventions; FileFormatError if it cannot.
+Reader = Callable[[Path], Motion]
+
+#: Writers by suffix, in lower case.
+WRITERS: dict[str, Writer] = {".bvh": write_bvh, ".csv": write_csv, ".npz": write_npz}
+#: Readers by suffix, in lower case.
+READERS: dict[str, Reader] = {".npz": read_npz}
+
+
+def save(motion: Motion, path: str | Path, writers: Mapping[str, Writer] = WRITERS) -> Path:
+    """Write ``motion`` in the format of the suffix of ``path``, which is returned.
+
+    The file appears whole or not at all: it is written beside the target and moved over it.
+
+    Raises
+    ------
+    UnknownFormatError
+        If no writer has the suffix; nothing was touched.
+    InvalidInputError
+        If the motion lacks what the format needs.
+    OSError
+        If the disk refuses, FileNotFoundError if the folder does not exist.
+    """
+    return save_all(motion, [path], writers)[0]
+
+
+def save_all(
+    motion: Motion, paths: Iterable[str | Path], writers: Mapping[str, Writer] = WRITERS
+) -> list[Path]:
+    """Write ``motion`` to every path, or to none of them if one cannot be written.
+
+    Raises as :func:`save` does. All files are complete before the first takes its place.
+    """
+    targets = [Path(path) for path in paths]
+    jobs = [(_writer(target, writers), target, _partial(target)) for target in targets]
+    try:
+        for write, target, partial in jobs:
+            try:
+                write(motion, partial)
+            except OSError as error:
+                if error.filename is not None and Path(os.fsdecode(error.filename)) == partial:
+                    error.filename = str(target)  # nobody knows the name of the partial file
+                raise
+        for _, target, partial in jobs:
+            partial.replace(target)
+    finally:
+        for _, _, partial in jobs:
+            partial.unlink(missing_ok=True)
+    return targets
+
+
+def load(path: str | Path, readers: Mapping[str, Reader] = READERS) -> Motion:
+    """Motion in the file at ``path``, read by what the table has for its suffix.
+
+    Raises
+    ------
+    UnknownFormatError
+        If no reader has the suffix.
+    FileFormatError
+        If the file is not what its suffix says; the message says what is wrong.
+    OSError
+        If it cannot be opened.
+    """
+    path = Path(path)
+    read = readers.get(path.suffix.lower())
+    if read is None:
+        raise UnknownFormatError(path.suffix, readers, verb="read")
+    return read(path)
+
+
+def _writer(target: Path, writers: Mapping[str, Writer]) -> Writer:
+    """Writer of the suffix, once it is known that there is a place for its file."""
+    writer = writers.get(target.suffix.lower())
+    if writer is None:
+        raise UnknownFormatError(target.suffix, writers)
+    if not target.parent.is_dir():
+        raise FileNotFoundError(f"cannot write {target}: there is no folder {target.parent}")
+    if target.is_dir():
+        raise IsADirectoryError(f"cannot write {target}: it is a folder")
+    return writer
+
+
+def _partial(target: Path) -> Path:
+    """Name beside ``target`` that no other file has, with its suffix."""
+    return target.with_name(f".gaitsmith-{os.urandom(8).hex()}{target.suffix}")

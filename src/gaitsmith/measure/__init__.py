@@ -1,0 +1,5 @@
+"""Motion to numbers."""
+
+from gaitsmith.measure.promises import promises
+
+__all__ = ["promises"]

@@ -1,0 +1,148 @@
+"""What every generated motion promises, measured back from the motion itself."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.errors import InvalidInputError
+from gaitsmith.motion.kinematics import motion_kinematics, sole_positions
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Int
+
+    from gaitsmith.ground import Ground
+    from gaitsmith.motion.motion import Labels, Motion
+
+
+def promises(motion: Motion, ground: Ground) -> dict[str, float]:
+    """Figures of design section 6 that a generated motion can show by itself.
+
+    Returns
+    -------
+    ``slip_mm_max`` (of a sole point over a whole contact), ``penetration_mm_max``,
+    ``float_mm_max`` (height while in contact), ``knee_min_deg`` (flexion while the foot bears),
+    ``path_error_p95_m`` (signed distance of the mid-hip to the path, averaged over a stride),
+    ``goal_error_m`` (middle of the last two footsteps to the end of the path), and the gait's
+    own ``distance_m``, ``step_length_m``, ``cadence_spm``, ``speed_mps`` (both of the steady
+    steps) and ``mean_speed_mps`` (of the whole motion).
+
+    Raises
+    ------
+    InvalidInputError
+        If the motion has no labels, contacts or soles.
+    """
+    if motion.labels is None or motion.contacts is None:
+        raise InvalidInputError("this motion has no labels and contacts; only generated ones have")
+    positions, world = motion_kinematics(motion)
+    soles = sole_positions(motion.skeleton, positions, world)
+    above = soles[..., 1] - ground.height(soles[..., 0], soles[..., 2])
+    down = motion.contacts
+    return {
+        "slip_mm_max": 1e3 * _slip(soles, down),
+        "penetration_mm_max": 1e3 * max(0.0, float(-above.min())),
+        "float_mm_max": 1e3 * max(0.0, float(above[down].max(initial=0.0))),
+        "knee_min_deg": _knee(motion, positions, down),
+        **_gait(motion, motion.labels, positions),
+    }
+
+
+def _slip(soles: Float[np.ndarray, "F 2 3 3"], down: Bool[np.ndarray, "F 2 3"]) -> float:
+    """Farthest that a sole point gets from where its contact began, meters."""
+    worst = 0.0
+    for side in range(2):
+        for point in range(3):
+            flags = down[:, side, point]
+            starts = flags & ~np.concatenate([[False], flags[:-1]])
+            began = np.maximum.accumulate(np.where(starts, np.arange(len(flags)), 0))
+            path = soles[:, side, point]
+            gone = np.linalg.norm(path - path[began], axis=-1)[flags]
+            worst = max(worst, float(gone.max(initial=0.0)))
+    return worst
+
+
+def _knee(
+    motion: Motion, positions: Float[np.ndarray, "F J 3"], down: Bool[np.ndarray, "F 2 3"]
+) -> float:
+    """Smallest knee flexion of a leg whose foot bears, degrees."""
+    least = np.inf
+    for i, side in enumerate(("left", "right")):
+        hip, knee, ankle = (
+            positions[:, motion.skeleton.index(side + part)]
+            for part in ("UpperLeg", "LowerLeg", "Foot")
+        )
+        thigh, shin = knee - hip, ankle - knee
+        sine = np.linalg.norm(np.cross(thigh, shin), axis=-1)
+        flexion = np.arctan2(sine, (thigh * shin).sum(-1))[down[:, i].any(-1)]
+        least = min(least, float(flexion.min(initial=np.inf)))
+    return float(np.degrees(least))
+
+
+def _gait(
+    motion: Motion, labels: Labels, positions: Float[np.ndarray, "F J 3"]
+) -> dict[str, float]:
+    index = motion.skeleton.index
+    hips = 0.5 * (positions[:, index("leftUpperLeg")] + positions[:, index("rightUpperLeg")])
+    path, way = labels.path, hips[:, [0, 2]]
+    out = {"distance_m": float(np.linalg.norm(way[-1] - way[0]))}
+    if path is not None:
+        out["path_error_p95_m"] = _path_error(way, path, labels, motion.fps)
+        last = labels.footstep_position[-2:, [0, 2]].mean(0)
+        out["goal_error_m"] = float(np.linalg.norm(last - path[-1]))
+    steady = steady_steps(labels)
+    gaps = step_lengths(labels)[steady]
+    times = np.diff(labels.footstep_time[1:])[steady]
+    length, duration = float(np.median(gaps)), float(np.median(times))
+    out |= {
+        "step_length_m": length,
+        "cadence_spm": 60.0 / duration,
+        "speed_mps": length / duration,
+        "mean_speed_mps": out["distance_m"] / max(motion.duration, 1e-9),
+    }
+    return out
+
+
+def step_lengths(labels: Labels) -> Float[np.ndarray, "steps"]:
+    """Distance of each footstep beyond the one before it, along the direction of the walk.
+
+    The direction at a step is that of the mean heading of its two feet, so that toe-out and
+    step width do not count.
+    """
+    position, heading = labels.footstep_position, labels.footstep_heading
+    mean = 0.5 * (heading[1:-1] + heading[2:])
+    gap = position[2:] - position[1:-1]
+    return gap[:, 0] * np.sin(mean) + gap[:, 2] * np.cos(mean)
+
+
+def steady_steps(labels: Labels) -> Int[np.ndarray, "k"]:
+    """Indices of the steps that neither start, stop nor fit the end; all if there are none."""
+    lengths, times = step_lengths(labels), np.diff(labels.footstep_time[1:])
+    longest = lengths.max()
+    full = (lengths > longest * (1.0 - 1e-6)) & (times < times.min() * (1.0 + 1e-6))
+    return np.flatnonzero(full) if full.any() else np.flatnonzero(lengths >= 0.5 * longest)
+
+
+def _path_error(
+    way: Float[np.ndarray, "F 2"], path: Float[np.ndarray, "P 2"], labels: Labels, fps: float
+) -> float:
+    """95th percentile of the stride's mean signed distance to the path, meters."""
+    segment = np.diff(path, axis=0)
+    signed = np.empty(len(way))
+    # blocks of frames: frames times segments would not fit the memory of a long walk
+    block = max(1, 4_000_000 // len(segment))
+    for start in range(0, len(way), block):
+        here = way[start : start + block, None] - path[:-1]
+        t = np.clip((here * segment).sum(-1) / (segment**2).sum(-1), 0.0, 1.0)
+        off = here - t[..., None] * segment
+        near = (off**2).sum(-1).argmin(-1)
+        off = np.take_along_axis(off, near[:, None, None], axis=1)[:, 0]
+        s = segment[near]
+        signed[start : start + block] = np.sign(s[:, 0] * off[:, 1] - s[:, 1] * off[:, 0]) * (
+            np.linalg.norm(off, axis=-1)
+        )
+    stride = int(round(2.0 * float(np.median(np.diff(labels.footstep_time[1:]))) * fps))
+    if 1 < stride < len(way):
+        signed = np.convolve(signed, np.ones(stride) / stride, mode="valid")
+    return float(np.percentile(np.abs(signed), 95.0))
+

@@ -1,0 +1,240 @@
+"""The one-call API: a body, a place to go, a way of walking; a motion, a file."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from dataclasses import asdict
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gaitsmith import io
+from gaitsmith._checks import number, one_of, positive
+from gaitsmith._version import __version__
+from gaitsmith.body.files import body_from_dict, body_to_dict
+from gaitsmith.body.presets import body_from
+from gaitsmith.errors import GaitsmithWarning, InvalidInputError, UnknownNameError
+from gaitsmith.ground import GROUNDS
+from gaitsmith.plan.pace import UNUSUAL_FROUDE, choose_pace, froude
+from gaitsmith.plan.straight import Stance, plan_straight
+from gaitsmith.synthesis.sample import sample_walk
+from gaitsmith.synthesis.step import prepare_walk
+from gaitsmith.synthesis.straight import StraightGenerator
+from gaitsmith.synthesis.upper_body import Manner
+from gaitsmith.walk import WALKS
+from gaitsmith.walk.generalize import LONG_STEP, check_step_length
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.motion.motion import Motion
+
+#: Step width over stature: 0.10 m for 1.75 m. People walk with 0.06-0.14 m; 0.13 leg lengths
+#: is preferred on a treadmill (Donelan, Kram & Kuo 2001).
+STEP_WIDTH = 0.057
+#: Toe-out of each foot, radians: 5.9 +- 6.9 deg (normal adults, heel-ball line).
+TOE_OUT = float(np.radians(6.0))
+#: Seconds of standing after a stop.
+REST = 0.4
+#: Widest step over leg length, largest toe-out, most frames a second.
+WIDEST_STEP, LARGEST_TOE_OUT, FASTEST_FPS = 0.5, float(np.radians(45.0)), 10_000.0
+
+
+def _picture(name: str) -> Callable[[Motion, Path], None]:
+    def write(motion: Motion, path: Path) -> None:
+        getattr(import_module("gaitsmith.viz"), name)(motion, path)  # late: Pillow
+
+    return write
+
+
+#: Everything a motion can be written to, by suffix: io's formats and viz's pictures.
+WRITERS: dict[str, io.Writer] = {
+    **io.WRITERS,
+    ".png": _picture("contact_sheet"),
+    ".gif": _picture("gif"),
+}
+
+
+def walk(
+    *,
+    distance: float,
+    body: str | float | Path | Body = 1.75,
+    gait: str = "winter",
+    step_length: float | None = None,
+    cadence: float | None = None,
+    speed: float | None = None,
+    start: str = "stand",
+    stop: str = "stand",
+    step_width: float | None = None,
+    toe_out: float = TOE_OUT,
+    manner: Manner | None = None,
+    fps: float = 60.0,
+    seed: int = 0,
+) -> Motion:
+    """A person who walks straight ahead, along +Z from the origin, on level ground.
+
+    Parameters
+    ----------
+    distance
+        Meters from the first to the last point of the path.
+    body
+        Height in meters, name of a built-in body, ``.toml`` file of measures, or a Body.
+    gait
+        Name of a built-in walk (``gaitsmith list gaits``).
+    step_length, cadence, speed
+        Meters, steps per minute, meters per second. Any two fix the third, one is completed
+        as people do, none is the body's preferred pace; see
+        :func:`gaitsmith.plan.pace.choose_pace`.
+    start, stop
+        ``"stand"`` (feet side by side on the end of the path) or ``"walk"`` (mid-walk, from
+        heel strike to heel strike).
+    step_width
+        Meters between left and right footsteps, measured across; None: 0.057 of the height.
+    toe_out
+        Radians that each foot turns out.
+    manner
+        Sizes of the rules above the legs; ``Manner(pelvis=False)`` switches a layer off.
+    fps
+        Frames per second; frame ``i`` is at ``i / fps`` seconds.
+    seed
+        Part of the recipe. This walk has no randomness: it changes nothing yet.
+
+    Returns
+    -------
+    Motion with contacts and labels; its recipe regenerates it, see :func:`regenerate`.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is of no use, or the three of pace contradict each other.
+    InfeasibleError
+        If this body cannot take such steps, or nobody walks that fast.
+
+    Warns
+    -----
+    GaitsmithWarning
+        Where the walk is possible but unusual: steps over 1.05 leg lengths, Froude number
+        over 0.4.
+
+    Examples
+    --------
+    >>> motion = walk(distance=3.0, body=1.2, fps=30)
+    >>> motion.labels.footstep_position[-1, 2].round(6)
+    np.float64(3.0)
+    """
+    who = body_from(body)
+    distance = positive("distance", distance, "meters")
+    fps = positive("fps", fps, "frames per second")
+    if fps > FASTEST_FPS:
+        raise InvalidInputError(f"fps must be at most {FASTEST_FPS:g}, got {fps:g}")
+    if gait not in WALKS:
+        raise UnknownNameError("gait", gait, WALKS)
+    one_of("start", start, ("stand", "walk"))
+    one_of("stop", stop, ("stand", "walk"))
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InvalidInputError(f"seed must be a whole number, 0 or more, got {seed!r}")
+    manner = manner or Manner()
+    stance = _stance(who, step_width, toe_out)
+    pace = choose_pace(who, step_length=step_length, cadence=cadence, speed=speed)
+    check_step_length(who, pace.step_length)
+    _warn_of_unusual(who, pace.step_length, pace.speed)
+    recipe = {
+        "gaitsmith": __version__,
+        "walk": {
+            "distance": distance,
+            "body": body_to_dict(who),
+            "gait": gait,
+            "step_length": step_length,
+            "cadence": cadence,
+            "speed": speed,
+            "start": start,
+            "stop": stop,
+            "step_width": stance.width,
+            "toe_out": stance.toe_out,
+            "manner": asdict(manner),
+            "fps": fps,
+            "seed": seed,
+        },
+    }
+    ground = GROUNDS["flat"]()
+    plan = plan_straight(
+        distance=distance, pace=pace, stance=stance, ground=ground, start=start, stop=stop
+    )
+    generator = StraightGenerator(WALKS[gait](), ground, manner)
+    prepared = prepare_walk(plan, generator, who, ground, rest=REST)
+    return sample_walk(prepared, who, ground, fps=fps, recipe=recipe)
+
+
+def _stance(body: Body, step_width: float | None, toe_out: float) -> Stance:
+    width = STEP_WIDTH * body.height if step_width is None else step_width
+    width = positive("step_width", width, "meters")
+    if width > WIDEST_STEP * body.leg_length:
+        raise InvalidInputError(
+            f"step_width must be at most {WIDEST_STEP:g} of the leg length of "
+            f"{body.leg_length:.3f} m, got {width!r} m"
+        )
+    toe_out = number("toe_out", toe_out, "radians")
+    if abs(toe_out) > LARGEST_TOE_OUT:
+        raise InvalidInputError(
+            f"toe_out must be within +-{np.degrees(LARGEST_TOE_OUT):g} deg, got "
+            f"{np.degrees(toe_out):.1f} deg"
+        )
+    return Stance(width, toe_out)
+
+
+def _warn_of_unusual(body: Body, step_length: float, speed: float) -> None:
+    ratio, number_ = step_length / body.leg_length, froude(body, speed)
+    if ratio > LONG_STEP:
+        warnings.warn(
+            f"steps of {step_length:.3f} m are {ratio:.2f} leg lengths: longer than people take",
+            GaitsmithWarning,
+            stacklevel=3,
+        )
+    if number_ > UNUSUAL_FROUDE:
+        warnings.warn(
+            f"{speed:.2f} m/s is Froude number {number_:.2f} for this body: people would nearly run",
+            GaitsmithWarning,
+            stacklevel=3,
+        )
+
+
+def regenerate(recipe: Motion | str | dict[str, Any]) -> Motion:
+    """The motion that a recipe describes, to the byte.
+
+    ``recipe`` is a generated motion, or what its ``labels.recipe`` holds.
+    """
+    if not isinstance(recipe, str | dict):
+        if recipe.labels is None:
+            raise InvalidInputError("this motion has no recipe; only generated ones have")
+        recipe = recipe.labels.recipe
+    data = json.loads(recipe) if isinstance(recipe, str) else recipe
+    if not isinstance(data.get("walk"), dict):
+        raise InvalidInputError("a recipe must be an object with a 'walk' object")
+    made_by = data.get("gaitsmith")
+    if made_by != __version__:
+        warnings.warn(
+            f"the recipe is of gaitsmith {made_by}, this is {__version__}: the motion may differ",
+            GaitsmithWarning,
+            stacklevel=2,
+        )
+    arguments = dict(data["walk"])
+    arguments["body"] = body_from_dict(arguments["body"])
+    arguments["manner"] = Manner(**arguments["manner"])
+    return walk(**arguments)
+
+
+def save(motion: Motion, path: str | Path) -> Path:
+    """Write ``motion`` in the format of the suffix of ``path``; whole or not at all.
+
+    Formats: ``gaitsmith list formats``. Raises as :func:`gaitsmith.io.save` does.
+    """
+    return io.save(motion, path, WRITERS)
+
+
+def save_all(motion: Motion, paths: Iterable[str | Path]) -> list[Path]:
+    """Write ``motion`` to every path, or to none if one of them cannot be written."""
+    return io.save_all(motion, paths, WRITERS)
