@@ -13,14 +13,14 @@ import argparse
 from pathlib import Path
 
 from gaitsmith.body.presets import KB92B_SUBJECT
-from gaitsmith.walk.extract import extract, read_winter_table
-from gaitsmith.walk.files import write_walk_data
+from gaitsmith.walks.extract import extract, read_winter_table
+from gaitsmith.walks.files import write_walk_data
 
 TARGET = Path(__file__).parent.parent / "src/gaitsmith/data/winter_step.json"
 SOURCE = (
     "Derived from the marker coordinates of Table A.1 in D. A. Winter, Biomechanics and Motor "
     "Control of Human Movement, 4th ed., Wiley 2009 (subject WM, natural cadence), by "
-    "gaitsmith.walk.extract; legs of the measured subject of [KB92b] section 6."
+    "gaitsmith.walks.extract; legs of the measured subject of [KB92b] section 6."
 )
 
 

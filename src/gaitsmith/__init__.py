@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from gaitsmith.motion.skeleton import Skeleton
     from gaitsmith.pipeline import regenerate, save, save_all, walk
     from gaitsmith.synthesis.upper_body import Manner
-    from gaitsmith.walk import WALKS, StraightWalk
+    from gaitsmith.walks import WALKS, StraightWalk
 
 #: Where each public name lives. They load when first asked for, so that importing the package
 #: and asking the command line for help cost nothing.
@@ -55,37 +55,37 @@ _HOMES = {
     "save": "pipeline",
     "save_all": "pipeline",
     "Skeleton": "motion.skeleton",
-    "StraightWalk": "walk",
+    "StraightWalk": "walks",
     "walk": "pipeline",
-    "WALKS": "walk",
+    "WALKS": "walks",
 }
 
 __all__ = [
-    "__version__",
     "BODIES",
+    "GROUNDS",
+    "WALKS",
     "Body",
-    "body_from",
     "Cycle",
     "FileFormatError",
     "Foot",
     "GaitsmithError",
     "GaitsmithWarning",
     "Ground",
-    "GROUNDS",
     "InfeasibleError",
     "InvalidInputError",
     "Labels",
-    "load",
     "Manner",
     "Markers",
     "Motion",
+    "Skeleton",
+    "StraightWalk",
+    "__version__",
+    "body_from",
+    "load",
     "regenerate",
     "save",
     "save_all",
-    "Skeleton",
-    "StraightWalk",
     "walk",
-    "WALKS",
 ]
 
 

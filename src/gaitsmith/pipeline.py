@@ -23,8 +23,8 @@ from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
 from gaitsmith.synthesis.straight import StraightGenerator
 from gaitsmith.synthesis.upper_body import Manner
-from gaitsmith.walk import WALKS
-from gaitsmith.walk.generalize import LONG_STEP, check_step_length
+from gaitsmith.walks import WALKS
+from gaitsmith.walks.generalize import LONG_STEP, check_step_length
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -124,7 +124,9 @@ class ContactPlan:
         pitch, meta, bend = read("pitch", 2), read("meta", 2), read("bend", 2)
         bend = np.where(down, np.where(pitch < 0.0, -pitch - meta, 0.0), bend)
         pelvis = multiply(about("y", heading), exp(read("pelvis", 3)))
-        ankle, foot = self._feet(step, phase, down, pitch, meta, read("ankle", 2, 3), read("foot_heading", 2))
+        ankle, foot = self._feet(
+            step, phase, down, pitch, meta, read("ankle", 2, 3), read("foot_heading", 2)
+        )
         half = (0.5 * self.body.hip_width) * rotate(pelvis, np.array([1.0, 0.0, 0.0]))
         hip = center[:, None] + SIDE_SIGN[:, None] * half[:, None]
         # the knee points half way between where the foot and where the pelvis face

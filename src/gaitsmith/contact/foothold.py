@@ -43,9 +43,7 @@ class Footholds:
 
     def place(self, points: Float[np.ndarray, "*n 2"]) -> Float[np.ndarray, "*n 3"]:
         """World position of sagittal points ``(forward, up)`` from N."""
-        return (
-            self.position + points[..., :1] * self.forward + points[..., 1:] * self.normal
-        )
+        return self.position + points[..., :1] * self.forward + points[..., 1:] * self.normal
 
     def ankle(
         self, foot: Foot, pitch: Float[np.ndarray, "*n"], meta: Float[np.ndarray, "*n"]

@@ -55,9 +55,7 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
     slack = np.where(down, 0.0, np.inf)
     share = walk.phase / np.minimum(walk.toe_off[walk.step], 1.0)
     slack[rear] = (REAR_SLACK * body.leg_length * share)[rear.any(-1)]
-    down_by = lowering(
-        walk.at, hip, walk.curves["ankle"], slack, leg_length=body.leg_length
-    )
+    down_by = lowering(walk.at, hip, walk.curves["ankle"], slack, leg_length=body.leg_length)
     walk.curves["center"][:, 1] -= down_by
     hip[..., 1] -= down_by[:, None]
     _raise_rear_heels(walk, body, stands, rear, hip)
@@ -74,9 +72,7 @@ def _hips(walk: Proposal, body: Body) -> Float[np.ndarray, "M 2 3"]:
     return walk.curves["center"][:, None] + SIDE_SIGN[:, None] * half[:, None]
 
 
-def _lock(
-    walk: Proposal, body: Body, stands: Footholds, down: Bool[np.ndarray, "M 2"]
-) -> None:
+def _lock(walk: Proposal, body: Body, stands: Footholds, down: Bool[np.ndarray, "M 2"]) -> None:
     """Put the ankle and the heading of every bearing foot where its foothold has them."""
     node, side = np.nonzero(down)
     here = stands.at((walk.step[node], side))
@@ -167,7 +163,9 @@ def _swing(
     end = targets.at(steps).ankle(foot, land_pitch, np.zeros(len(steps)))
     ankle[first] = walk.leaving.ankle[steps]
 
-    def spread(at_start: Float[np.ndarray, "k c"], at_end: Float[np.ndarray, "k c"]) -> Float[np.ndarray, "n c"]:
+    def spread(
+        at_start: Float[np.ndarray, "k c"], at_end: Float[np.ndarray, "k c"]
+    ) -> Float[np.ndarray, "n c"]:
         return np.repeat(at_start, count, axis=0) * (1.0 - w) + np.repeat(at_end, count, axis=0) * w
 
     ankle += spread(
@@ -209,7 +207,9 @@ def _leaving_speed(
     at = walk.at[free]
     node = np.flatnonzero(free)[first]
 
-    def slope(x: Float[np.ndarray, "k 3"], y: Float[np.ndarray, "k 3 3"]) -> Float[np.ndarray, "k 3"]:
+    def slope(
+        x: Float[np.ndarray, "k 3"], y: Float[np.ndarray, "k 3 3"]
+    ) -> Float[np.ndarray, "k 3"]:
         """End slope of the parabola through three samples, the first being the end."""
         h0, h1 = (x[:, 1] - x[:, 0])[:, None], (x[:, 2] - x[:, 1])[:, None]
         d0, d1 = (y[:, 1] - y[:, 0]) / h0, (y[:, 2] - y[:, 1]) / h1
@@ -244,5 +244,3 @@ def _clearance(
     short = want - lowest
     soft = 0.3 * want + 1e-9  # a soft maximum: no corner where the lift begins
     return 0.5 * (short + np.sqrt(short**2 + soft**2))
-
-

@@ -115,7 +115,9 @@ def raised_heel(
     limit = REAR_REACH * leg_length
     extra = np.zeros(len(pitch))
 
-    def too_far(more: Float[np.ndarray, "k"], which: Bool[np.ndarray, "n"]) -> Bool[np.ndarray, "k"]:
+    def too_far(
+        more: Float[np.ndarray, "k"], which: Bool[np.ndarray, "n"]
+    ) -> Bool[np.ndarray, "k"]:
         ankle = stand.at(which).ankle(foot, np.minimum(pitch[which] - more, -1e-9), meta[which])
         return ((ankle - hip[which]) ** 2).sum(-1) > limit**2
 

@@ -57,7 +57,7 @@ class ReferenceStep:
         ``(T, 2)``, unwrapped.
     pitch, meta, bend
         ``(T, 2)`` sole pitch, toes against the floor, toes against the sole, as in
-        :class:`gaitsmith.walk.model.SagittalStep`, against the foothold's plane.
+        :class:`gaitsmith.walks.model.SagittalStep`, against the foothold's plane.
     upper
         ``(T, U, 3)`` local rotation vectors of the upper body's joints.
     """

@@ -98,7 +98,9 @@ class StepPlan:
         if self.path is not None:
             object.__setattr__(self, "path", frozen_array("path", self.path, (None, 2)))
         if len(self.kinds) != count - 2:
-            raise InvalidInputError(f"{count} footsteps make {count - 2} steps, got {len(self.kinds)} kinds")
+            raise InvalidInputError(
+                f"{count} footsteps make {count - 2} steps, got {len(self.kinds)} kinds"
+            )
         if not np.isin(self.side, (0, 1)).all():
             raise InvalidInputError("side must be 0 (left) or 1 (right) for every footstep")
         same = np.flatnonzero(self.side[1:] == self.side[:-1])

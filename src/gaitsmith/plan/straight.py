@@ -148,5 +148,3 @@ def footstep_positions(
     out = out + (0.5 * stance.width * SIDE_SIGN[side])[:, None] * leftward(heading)
     out[:, 1] = ground.height(out[:, 0], out[:, 2])
     return out
-
-

@@ -55,7 +55,9 @@ def sample_walk(
     )
 
 
-def _labels(walk: PreparedWalk, ground: Ground, times: np.ndarray, recipe: dict[str, Any]) -> Labels:
+def _labels(
+    walk: PreparedWalk, ground: Ground, times: np.ndarray, recipe: dict[str, Any]
+) -> Labels:
     plan = walk.plan
     step, phase = walk.clock.position(times)
     landed = times >= walk.clock.starts[-1] - 1e-9

@@ -13,7 +13,7 @@ from gaitsmith.conventions import UP, ahead, leftward
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
 from gaitsmith.synthesis.upper_body import Manner, Overlay, rule_overlay
-from gaitsmith.walk.model import SagittalStep, StepRequest, StraightWalk
+from gaitsmith.walks.model import SagittalStep, StepRequest, StraightWalk
 
 if TYPE_CHECKING:
     from gaitsmith.body.body import Body
@@ -35,7 +35,9 @@ class _Line:
     @staticmethod
     def of(step: PlannedStep) -> _Line:
         """Half way between the lines of the left and of the right feet."""
-        line = _Line(step.stance.position, ahead(step.stance.direction), leftward(step.stance.direction))
+        line = _Line(
+            step.stance.position, ahead(step.stance.direction), leftward(step.stance.direction)
+        )
         middle = 0.5 * line.aside(step.target)
         if step.stance.direction != step.target.direction or (
             abs(line.aside(step.target) - line.aside(step.origin)) > STRAIGHT
@@ -56,7 +58,7 @@ class _Line:
 
 
 class StraightGenerator:
-    """Walks straight plans with any :class:`~gaitsmith.walk.model.StraightWalk`.
+    """Walks straight plans with any :class:`~gaitsmith.walks.model.StraightWalk`.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
-    from gaitsmith.walk.model import SagittalStep, StepRequest
+    from gaitsmith.walks.model import SagittalStep, StepRequest
 
 
 @dataclass(frozen=True)

@@ -104,7 +104,12 @@ class SagittalStep:
             ("bend", (n, 2)),
         ):
             object.__setattr__(self, name, frozen_array(name, getattr(self, name), shape))
-        if n < 2 or self.phase[0] != 0.0 or self.phase[-1] != 1.0 or (np.diff(self.phase) <= 0).any():
+        if (
+            n < 2
+            or self.phase[0] != 0.0
+            or self.phase[-1] != 1.0
+            or (np.diff(self.phase) <= 0).any()
+        ):
             raise InvalidInputError("phase must rise from 0 to 1 without repeating")
         if not 0.0 < self.toe_off < 1.0:
             raise InvalidInputError(f"toe_off must be a phase in (0, 1), got {self.toe_off!r}")

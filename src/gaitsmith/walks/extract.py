@@ -12,8 +12,8 @@ from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.signals import butterworth_zero_lag
 from gaitsmith.motion.motion import Markers
-from gaitsmith.walk.data import Character, TimedSequence, WalkData
-from gaitsmith.walk.generalize import generalize
+from gaitsmith.walks.data import Character, TimedSequence, WalkData
+from gaitsmith.walks.generalize import generalize
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -184,9 +184,7 @@ def _sole_angles(
     return angle("heel", "ball"), -angle("ball", "toe")
 
 
-def _measured_foot(
-    paths: dict[str, Float[np.ndarray, "n 2"]], flat: Bool[np.ndarray, "n"]
-) -> Foot:
+def _measured_foot(paths: dict[str, Float[np.ndarray, "n 2"]], flat: Bool[np.ndarray, "n"]) -> Foot:
     sole = paths["ball"] - paths["heel"]
     along = sole / np.linalg.norm(sole, axis=-1, keepdims=True)
     ankle = paths["ankle"] - paths["heel"]

@@ -145,4 +145,3 @@ def _path_error(
     if 1 < stride < len(way):
         signed = np.convolve(signed, np.ones(stride) / stride, mode="valid")
     return float(np.percentile(np.abs(signed), 95.0))
-

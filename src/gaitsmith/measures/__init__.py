@@ -1,5 +1,5 @@
 """Motion to numbers."""
 
-from gaitsmith.measure.promises import promises
+from gaitsmith.measures.promises import promises
 
 __all__ = ["promises"]

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.walk.data import TimedSequence, WalkData
-from gaitsmith.walk.generalize import generalize, mu
+from gaitsmith.walks.data import TimedSequence, WalkData
+from gaitsmith.walks.generalize import generalize, mu
 
 if TYPE_CHECKING:
     from jaxtyping import Float

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body, Foot
-    from gaitsmith.walk.data import Character, WalkData
+    from gaitsmith.walks.data import Character, WalkData
 
 #: Longest step over leg length; above it the rear leg cannot reach (measured on five bodies).
 LONGEST_STEP = 1.15
@@ -99,7 +99,9 @@ def hip_height(character: Character, body: Body, length: float) -> float:
     return float(y + np.sqrt(square))
 
 
-def check_step_length(body: Body, length: float, *, step: int | None = None, side: str = "") -> None:
+def check_step_length(
+    body: Body, length: float, *, step: int | None = None, side: str = ""
+) -> None:
     """Refuse a step longer than this body's rear leg can follow, or shorter than none."""
     if not (np.isfinite(length) and length >= 0.0):
         raise InvalidInputError(f"step length must be 0 m or more, got {length!r}")

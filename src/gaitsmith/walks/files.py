@@ -11,7 +11,7 @@ import numpy as np
 
 from gaitsmith.body.files import body_from_dict, body_to_dict
 from gaitsmith.errors import FileFormatError
-from gaitsmith.walk.data import Character, TimedSequence, WalkData
+from gaitsmith.walks.data import Character, TimedSequence, WalkData
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gaitsmith.walk.files import built_in
-from gaitsmith.walk.kinematic import KinematicWalk
-from gaitsmith.walk.model import SagittalStep, StepRequest, StraightWalk
+from gaitsmith.walks.files import built_in
+from gaitsmith.walks.kinematic import KinematicWalk
+from gaitsmith.walks.model import SagittalStep, StepRequest, StraightWalk
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The measured walk as a :class:`~gaitsmith.walk.model.StraightWalk`, [KB92b]."""
+"""The measured walk as a :class:`~gaitsmith.walks.model.StraightWalk`, [KB92b]."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 from gaitsmith.body.sole import roll
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
-from gaitsmith.walk.blend import blend
-from gaitsmith.walk.data import TimedSequence, WalkData
-from gaitsmith.walk.generalize import (
+from gaitsmith.walks.blend import blend
+from gaitsmith.walks.data import TimedSequence, WalkData
+from gaitsmith.walks.generalize import (
     affine,
     ankle_at_heel_strike,
     ankle_at_toe_off,
@@ -21,7 +21,7 @@ from gaitsmith.walk.generalize import (
     generalize,
     mu,
 )
-from gaitsmith.walk.model import SagittalStep, StepRequest
+from gaitsmith.walks.model import SagittalStep, StepRequest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,7 +68,7 @@ class KinematicWalk:
         return self._prototypes
 
     def step(self, body: Body, request: StepRequest) -> SagittalStep:
-        """See :meth:`gaitsmith.walk.model.StraightWalk.step`."""
+        """See :meth:`gaitsmith.walks.model.StraightWalk.step`."""
         return self._cached(body, request)
 
     def walk_data(
