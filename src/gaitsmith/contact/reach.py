@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from gaitsmith.body.body import Body, Foot
     from gaitsmith.contact.foothold import Footholds
 
-#: Hip to ankle over leg length that a bearing leg may reach (7.2 deg of knee flexion).
-REACH = 0.998
-#: The same for the rear foot, which may raise its heel (5.1 deg).
-REAR_REACH = 0.999
+#: Hip to ankle over leg length that a bearing leg may reach (5.6 deg of knee flexion).
+REACH = 0.9988
+#: The same for the rear foot, which may raise its heel (4.3 deg).
+REAR_REACH = 0.9993
 #: Grid on which the lowering is found, and over what part of a step it is spread.
 PER_STEP, SPREAD = 60, 0.12
 #: How much nearer the rear ankle may come by raising its heel, at toe-off, over leg length.

@@ -132,7 +132,7 @@ class _Scene:
         mask = Image.fromarray(np.round(255.0 * share).astype(np.uint8))
         floor = Image.new("RGB", self.large, palette.PAPER)
         floor.paste(palette.FLOOR, (0, 0), mask)
-        return floor, mask.point(lambda v: min(255, 2 * v))
+        return floor, Image.fromarray(np.round(np.minimum(255.0, 510.0 * share)).astype(np.uint8))
 
     def draw(self, frame: int) -> Image.Image:
         """The finished RGB picture of one frame."""

@@ -17,7 +17,6 @@ from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import rotate
 from gaitsmith.viz.limbs import add_arm, add_leg, add_shoe
 from gaitsmith.viz.parts import Maker, Part
-from gaitsmith.viz.shapes import corner_normals
 from gaitsmith.viz.trunk import add_head, add_trunk
 
 if TYPE_CHECKING:
@@ -55,7 +54,7 @@ class Mannequin:
     @cached_property
     def normals(self) -> Float[np.ndarray, "faces 3 3"]:
         """Smooth unit normal at each corner of every face, in the frame of its joint."""
-        return np.concatenate([corner_normals(part.vertices, part.faces) for part in self.parts])
+        return np.concatenate([part.normals for part in self.parts])
 
     @cached_property
     def faces(self) -> Int[np.ndarray, "faces 3"]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.conventions import SIDES
-from gaitsmith.viz.shapes import ball, frame_along, tube
+from gaitsmith.viz.shapes import ball, corner_normals, frame_along, tube
 from gaitsmith.viz.shoe import Last, last_of
 
 if TYPE_CHECKING:
@@ -38,6 +38,8 @@ class Part:
         ``(T, 3)`` indices, counter-clockwise from outside.
     color
         sRGB, 0 to 255.
+    normals
+        ``(T, 3, 3)`` unit normal at the corners of each face, in the joint's frame.
     """
 
     name: str
@@ -45,6 +47,7 @@ class Part:
     vertices: Float[np.ndarray, "vertices 3"]
     faces: Int[np.ndarray, "faces 3"]
     color: Color
+    normals: Float[np.ndarray, "faces 3 3"]
 
 
 class Maker:
@@ -70,9 +73,17 @@ class Maker:
         """How many rings a piece ``length`` meters long gets."""
         return max(2, round(self.detail * (2.0 + length / (0.075 * self.girth))))
 
-    def add(self, name: str, joint: int, mesh: Mesh, color: Color) -> None:
-        """Keep a piece; its mesh is in the frame of ``joint``."""
-        self.parts.append(Part(name, joint, *mesh, color))
+    def add(
+        self,
+        name: str,
+        joint: int,
+        mesh: Mesh,
+        color: Color,
+        normals: Float[np.ndarray, "faces 3 3"] | None = None,
+    ) -> None:
+        """Keep a piece; its mesh is in the frame of ``joint``. Smooth normals by default."""
+        smooth = corner_normals(*mesh) if normals is None else normals
+        self.parts.append(Part(name, joint, *mesh, color, smooth))
 
     def _floor(self) -> float:
         """Height of the soles at rest: 0 by convention, but a file's root may hang anywhere."""

@@ -91,8 +91,7 @@ def camera(
 
 
 # Where the light comes from, in the picture's frame (right, up, toward the viewer).
-_KEY = np.array([0.42, 0.70, 0.58])
-_KEY = _KEY / np.linalg.norm(_KEY)
+_KEY = np.array([0.42, 0.70, 0.58]) / np.linalg.norm([0.42, 0.70, 0.58])
 _HALF = (_KEY + [0.0, 0.0, 1.0]) / np.linalg.norm(_KEY + [0.0, 0.0, 1.0])
 
 

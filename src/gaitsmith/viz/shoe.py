@@ -147,19 +147,17 @@ def outsole(last: Last, low: float, high: float) -> Mesh:
         (zero, edges[:, 0]),
         (0.5 * top, 1.03 * edges[:, 0]),
         (top, edges[:, 0]),
-        (top, edges.mean(1)),
+        (top, zero),
         (top, edges[:, 1]),
         (0.5 * top, 1.03 * edges[:, 1]),
         (zero, edges[:, 1]),
-        (zero, edges.mean(1)),
+        (zero, zero),
     ]
     rings = np.stack([np.stack([along, up, left], axis=1) for up, left in columns], axis=1)
-    ends = np.array(
-        [
-            [float(last.along(np.array([low]))[0]), 0.0, 0.0],
-            [float(last.along(np.array([high]))[0]), 0.0, 0.0],
-        ]
-    )
+    # the slab begins at the heel and ends at the tip exactly; where it is cut it is flat
+    ends = np.zeros((2, 3))
+    ends[:, 0] = last.along(np.array([low, high]))
+    ends[:, 1] = [0.5 * thick * (0.0 < cut < 1.0) for cut in (low, high)]
     placed = last.place(ends)
     return skin(last.place(rings), placed[0], placed[1])
 

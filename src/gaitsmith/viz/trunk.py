@@ -9,12 +9,13 @@ import numpy as np
 from gaitsmith.conventions import SIDE_SIGN, SIDES
 from gaitsmith.viz import palette
 from gaitsmith.viz.parts import HEAD_JOINT
-from gaitsmith.viz.shapes import ball, frame_along, resample, tube
+from gaitsmith.viz.shapes import ball, corner_normals, frame_along, resample, tube
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
     from gaitsmith.viz.parts import Maker
+    from gaitsmith.viz.shapes import Mesh
 
 # Half-widths of the trunk: share of hips-to-neck, half-width, half-depth, forward shift.
 _TRUNK = np.array(
@@ -51,12 +52,15 @@ def add_trunk(maker: Maker) -> None:
         if high - first < 1e-3:
             continue
         y = np.linspace(first, high, max(2, maker.rings(1.6 * (high - first))))
+        # Each piece reaches into its neighbours, hidden until the spine bends. The sharp and
+        # narrow rim where it dives keeps what is hidden out of the shading of the rest.
         under = np.ones(len(y))
         if k > 0:
-            # a plug, hidden in the piece below until the spine bends; the sharp rim between
-            # the two keeps the plug out of the shading
             y = np.concatenate([low - np.array([0.045, 0.02, 1e-4]) * g, y])
-            under = np.concatenate([[0.78, 0.90, 0.95], under])
+            under = np.concatenate([[0.78, 0.90, 0.98], under])
+        if k + 1 < len(chain):
+            y = np.concatenate([y, high + np.array([1e-4, 0.012]) * g])
+            under = np.concatenate([under, [0.99, 0.95]])
         share = (y - base) / length
         profile = np.stack([_smooth(share, c) for c in (1, 2, 3)])
         wide = np.interp(share, [0.0, 0.3, 0.8], breadth)
@@ -80,9 +84,30 @@ def add_trunk(maker: Maker) -> None:
             rings=None,
             square=2.5,
         )
-        maker.add(
-            maker.skeleton.names[joint], joint, mesh, palette.WOOD if k else palette.WOOD_DARK
-        )
+        color = palette.WOOD if k else palette.WOOD_DARK
+        hidden = (low if k else -np.inf) - low, (high if k + 1 < len(chain) else np.inf) - low
+        normals = _side_normals(mesh, hidden)
+        maker.add(maker.skeleton.names[joint], joint, mesh, color, normals)
+
+
+def _side_normals(mesh: Mesh, visible: tuple[float, float]) -> Float[np.ndarray, "faces 3 3"]:
+    """Normals of a piece of the trunk; what lies beyond its ``visible`` heights looks sideways.
+
+    When the spine turns, slivers of the hidden ends show; shaded like the side of the trunk
+    they go unnoticed.
+    """
+    vertices, faces = mesh
+    normals, corners = corner_normals(vertices, faces), vertices[faces]
+    half = np.ptp(vertices, axis=0)
+    outward = (corners - 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))) / half**2
+    outward[..., 1] = 0.0
+    length = np.linalg.norm(outward, axis=-1, keepdims=True)
+    up = corners[..., 1]
+    beyond = np.maximum(visible[0] - up, up - visible[1])
+    # a corner on the rim belongs to the side of the piece and to its end: the end is steep
+    hidden = (beyond > 1e-9) | ((beyond > -1e-9) & (np.abs(normals[..., 1]) > 0.6))
+    hidden &= length[..., 0] * half.max() > 1e-6
+    return np.where(hidden[..., None], outward / np.maximum(length, 1e-12), normals)
 
 
 def _spine(maker: Maker) -> list[int]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.body.body import Body, Foot
+from gaitsmith.body.sole import roll
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.signals import butterworth_zero_lag
@@ -99,7 +100,11 @@ def extract(markers: Markers, body: Body, *, cutoff: float = 6.0) -> Extraction:
     heel_off = _crossing(phase, -pitch, np.radians(2.0), after=level + 0.1, rising=True)
     meta_off = _crossing(phase, meta, np.radians(8.0), after=heel_off, rising=True)
 
+    foot1 = _landing(phase, pitch, level)
+    foot2 = _heel_rise(phase, pitch, level, heel_off, 1.0 + toe_off)
     hip = _mean_hip(phase, paths["hip"] - [here, floor], length)
+    measured = _read(phase, paths["ankle"][:, 1] - floor, hip.times)
+    hip = _as_far_from_the_ankle(hip, measured, foot, foot1, foot2)
     kappa = float(0.5 * (-hip.values[0, 0] + length - hip.values[-1, 0]) / length)
     swing = _between(phase, 1.0 + toe_off, 2.0)
     ankle = _read(phase, paths["ankle"], swing) - [here + length, floor]
@@ -122,8 +127,8 @@ def extract(markers: Markers, body: Body, *, cutoff: float = 6.0) -> Extraction:
         meta_off=meta_off,
         toe_off=toe_off,
         hip=hip,
-        foot1=_landing(phase, pitch, level),
-        foot2=_heel_rise(phase, pitch, level, heel_off, 1.0 + toe_off),
+        foot1=foot1,
+        foot2=foot2,
         foot3=TimedSequence(swing - 1.0, _read(phase, pitch, swing)),
         meta=_toe_rise(phase, meta, meta_off, 1.0 + toe_off),
         ankle=TimedSequence(swing - 1.0, ankle),
@@ -232,6 +237,29 @@ def _mean_hip(
     both = 0.5 * (_read(phase, hip, times) + _read(phase, hip, times + 1.0) - [length, 0.0])
     gap = both[-1] - both[0] - [length, 0.0]  # what keeps the mean stride from closing
     return TimedSequence(times, both + (0.5 - times)[:, None] * gap)
+
+
+def _as_far_from_the_ankle(
+    hip: TimedSequence,
+    measured: Float[np.ndarray, "n"],
+    foot: Foot,
+    foot1: TimedSequence,
+    foot2: TimedSequence,
+) -> TimedSequence:
+    """Hip path over the rigid foot's ankle as high as it was over the measured one.
+
+    A living heel is round and soft: the measured ankle rises less at heel strike and begins
+    to rise before the sole does. Left alone, those millimeters bend the knee too much in
+    loading and lock it at mid-stance, where it is nearly straight. Faded out at both ends, which
+    heel strikes determine.
+    """
+    t = hip.times
+    pitch = np.where(t < foot2.times[0], foot1.at(t)[:, 0], foot2.at(t)[:, 0])
+    modelled = roll(foot, pitch, np.zeros_like(pitch)).ankle[:, 1]
+    fade = smoothstep(t / 0.30) * (1.0 - smoothstep((t - 0.72) / 0.20))
+    values = np.array(hip.values)
+    values[:, 1] += fade * (modelled - measured)
+    return hip.with_values(values)
 
 
 def _interior_knee(body: Body, distance: float) -> float:

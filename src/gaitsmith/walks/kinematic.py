@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from gaitsmith.body.body import Body
 
 #: Straightness of the legs in standing: hip to ankle over leg length (7 degrees of flexion).
-STANDING_REACH = 0.998
+STANDING_REACH = 0.9982
 #: Samples a step is cut into, at least; the events are added to them.
 SAMPLES = 36
 #: The pose at the first toe-off is that of a walk with steps this part as long.
