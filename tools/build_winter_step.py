@@ -25,6 +25,7 @@ SOURCE = (
 
 
 def main() -> None:
+    """Read the table, write the file."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("table", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=TARGET)

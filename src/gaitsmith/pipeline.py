@@ -196,7 +196,7 @@ def _warn_of_unusual(body: Body, step_length: float, speed: float) -> None:
         )
     if number_ > UNUSUAL_FROUDE:
         warnings.warn(
-            f"{speed:.2f} m/s is Froude number {number_:.2f} for this body: people would nearly run",
+            f"{speed:.2f} m/s is Froude number {number_:.2f} for this body: nearly a run",
             GaitsmithWarning,
             stacklevel=3,
         )

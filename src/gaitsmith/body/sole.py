@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from jaxtyping import Float
 
     from gaitsmith.body.body import Foot
@@ -35,7 +37,17 @@ def turned(
     return np.stack([forward * c - up * s, forward * s + up * c], axis=-1)
 
 
-def roll(foot: Foot, pitch: Float[np.ndarray, "*n"], meta: Float[np.ndarray, "*n"]) -> SolePose:
+def rolled_ankle(
+    foot: Foot, pitch: Float[np.ndarray, "*n"] | float, meta: Float[np.ndarray, "*n"] | float
+) -> Float[np.ndarray, "*n 2"]:
+    """The ankle of :func:`roll` alone, for those who need it often."""
+    pitch, meta = np.asarray(pitch, dtype=np.float64), np.asarray(meta, dtype=np.float64)
+    return _rolled(foot, pitch, meta)(0.0, foot.ankle_height)
+
+
+def roll(
+    foot: Foot, pitch: Float[np.ndarray, "*n"] | float, meta: Float[np.ndarray, "*n"] | float
+) -> SolePose:
     """Pose of a foot that stands at N with sole pitch and meta angle (radians).
 
     ``pitch >= 0`` turns the whole foot about the heel; ``pitch < 0`` raises the heel while
@@ -46,23 +58,39 @@ def roll(foot: Foot, pitch: Float[np.ndarray, "*n"], meta: Float[np.ndarray, "*n
     pitch, meta = np.broadcast_arrays(
         np.asarray(pitch, dtype=np.float64), np.asarray(meta, dtype=np.float64)
     )
-    rocker = pitch >= 0.0
-    # heel rocker: everything turns about the heel
-    at_heel = np.stack([np.full(pitch.shape, -foot.heel), np.zeros(pitch.shape)], axis=-1)
-    # forefoot: the toes turn by meta about their tip, the rest by pitch about the toe joint
+    point = _rolled(foot, pitch, meta)
     tip = np.array([foot.ball + foot.toes, 0.0])
-    joint = tip + turned(-foot.toes, foot.toe_joint_height, -meta)
-
-    def point(forward: float, up: float) -> Float[np.ndarray, "*n 2"]:
-        by_heel = at_heel + turned(forward + foot.heel, up, pitch)
-        by_joint = joint + turned(forward - foot.ball, up - foot.toe_joint_height, pitch)
-        return np.where(rocker[..., None], by_heel, by_joint)
-
-    toe = np.where(rocker[..., None], at_heel + turned(foot.heel_ball + foot.toes, 0.0, pitch), tip)
+    on_heel = turned(foot.heel_ball + foot.toes, 0.0, pitch) - [foot.heel, 0.0]
     return SolePose(
         heel=point(-foot.heel, 0.0),
         ball=point(foot.ball, 0.0),
-        toe=toe,
+        toe=np.where((pitch >= 0.0)[..., None], on_heel, tip),
         ankle=point(0.0, foot.ankle_height),
         toe_joint=point(foot.ball, foot.toe_joint_height),
     )
+
+
+def _rolled(
+    foot: Foot, pitch: Float[np.ndarray, "*n"], meta: Float[np.ndarray, "*n"]
+) -> Callable[[float, float], Float[np.ndarray, "*n 2"]]:
+    """Where the rolling foot has a point that the flat foot has at (forward, up) from N."""
+    c, s = np.cos(pitch), np.sin(pitch)
+    rocker = pitch >= 0.0
+    # on its heel the foot turns about it; else about the toe joint, which the toes carry as
+    # they turn by meta about their tip
+    back, high = -foot.toes, foot.toe_joint_height
+    cm, sm = np.cos(meta), np.sin(meta)
+    tip = foot.ball + foot.toes
+    pivot_forward = np.where(rocker, -foot.heel, tip + back * cm + high * sm)
+    pivot_up = np.where(rocker, 0.0, high * cm - back * sm)
+    from_forward = np.where(rocker, -foot.heel, foot.ball)
+    from_up = np.where(rocker, 0.0, high)
+
+    def point(forward: float, up: float) -> Float[np.ndarray, "*n 2"]:
+        x, y = forward - from_forward, up - from_up
+        out = np.empty((*np.broadcast_shapes(c.shape, cm.shape), 2))
+        out[..., 0] = pivot_forward + x * c - y * s
+        out[..., 1] = pivot_up + x * s + y * c
+        return out
+
+    return point

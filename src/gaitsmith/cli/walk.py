@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator
 
     from gaitsmith.motion.motion import Motion
 
@@ -110,7 +110,7 @@ def facts_of(motion: Motion, files: list[Path], said: list[str]) -> dict[str, An
 
 
 @contextmanager
-def collected_warnings() -> Iterator[list[str]]:
+def collected_warnings() -> Generator[list[str]]:
     """Collect the library's warnings as lines; others pass."""
     import warnings
 

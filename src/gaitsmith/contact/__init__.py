@@ -8,6 +8,6 @@ look-up.
 
 from gaitsmith.contact.apply import ContactPlan, Poses
 from gaitsmith.contact.plan import plan_contact
-from gaitsmith.contact.reference import ReferenceStep
+from gaitsmith.contact.reference import ReferenceStep, StepCurves
 
-__all__ = ["ContactPlan", "Poses", "ReferenceStep", "plan_contact"]
+__all__ = ["ContactPlan", "Poses", "ReferenceStep", "StepCurves", "plan_contact"]

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.body.leg import two_bone_ik
-from gaitsmith.body.sole import roll
-from gaitsmith.contact.foothold import Footholds
+from gaitsmith.body.sole import rolled_ankle
 from gaitsmith.contact.reference import bearing
 from gaitsmith.conventions import SIDE_SIGN, ahead
 from gaitsmith.geometry.curves import hermite, parabola_slopes, pchip_slopes, smoothstep
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from jaxtyping import Bool, Float, Int
 
     from gaitsmith.body.body import Body
+    from gaitsmith.contact.foothold import Footholds
     from gaitsmith.contact.reference import Proposal
 
 #: Curves whose sign carries meaning (which part of the sole bears) are read monotonely.
@@ -161,7 +161,7 @@ class ContactPlan:
     ) -> tuple[Float[np.ndarray, "F 2 3"], Float[np.ndarray, "F 2 4"]]:
         """Ankles and world rotations of the feet; exact on their footholds where they bear."""
         stand = self.stands.at(step)
-        points = roll(self.body.foot, pitch, meta).ankle
+        points = rolled_ankle(self.body.foot, pitch, meta)
         ankle = np.where(down[..., None], stand.place(points), ankle)
         level = multiply(about("y", heading), about("x", -pitch))
         if self.level:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.body.sole import SolePose, roll
+from gaitsmith.body.sole import SolePose, rolled_ankle
 from gaitsmith.conventions import UP, ahead
 from gaitsmith.geometry.rotations import about, from_basis, inverse, log, multiply
 
@@ -49,7 +49,7 @@ class Footholds:
         self, foot: Foot, pitch: Float[np.ndarray, "*n"], meta: Float[np.ndarray, "*n"]
     ) -> Float[np.ndarray, "*n 3"]:
         """World position of the ankle of a foot that stands here."""
-        return self.place(roll(foot, pitch, meta).ankle)
+        return self.place(rolled_ankle(foot, pitch, meta))
 
 
 def footholds(

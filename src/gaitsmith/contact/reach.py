@@ -126,12 +126,12 @@ def raised_heel(
         return extra
     low, high = np.zeros(int(far.sum())), np.full(int(far.sum()), LARGEST_RAISE)
     open_ = np.ones(len(low), dtype=np.bool_)
-    for angle in np.linspace(0.0, LARGEST_RAISE, 41)[1:]:
+    for angle in np.linspace(0.0, LARGEST_RAISE, 21)[1:]:
         fits = open_ & ~too_far(np.full(len(low), angle), far)
         high[fits] = angle
         open_ &= ~fits
         low[open_] = angle
-    for _ in range(40):
+    for _ in range(34):
         middle = 0.5 * (low + high)
         beyond = too_far(middle, far)
         low, high = np.where(beyond, middle, low), np.where(beyond, high, middle)

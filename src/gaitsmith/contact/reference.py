@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaitsmith._checks import frozen_array
 from gaitsmith.errors import InvalidInputError
+from gaitsmith.geometry.curves import end_slope_correction, parabola_slopes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from jaxtyping import Bool, Float, Int
 
-#: Fields of a ReferenceStep that are sampled on its phases, with their shape after (T,).
+#: Fields of StepCurves that are sampled on its phases, with their shape after (T,).
 CURVES: dict[str, tuple[int | None, ...]] = {
     "center": (3,),
     "heading": (),
@@ -27,27 +29,22 @@ CURVES: dict[str, tuple[int | None, ...]] = {
     "bend": (2,),
     "upper": (None, 3),
 }
+#: Those that are positions, and so move with the step.
+PLACES = ("center", "ankle")
 
 
 @dataclass(frozen=True, eq=False)
-class ReferenceStep:
-    """One step as a walker proposes it, before the feet meet the ground.
+class StepCurves:
+    """Curves of one step as a walker proposes them, before the feet meet the ground.
 
-    World frame, meters and radians; side axes are [left, right]. T samples share ``phase``,
-    which holds the event at ``toe_off``.
+    World axes, meters and radians; positions are relative to a point that
+    :class:`ReferenceStep` names, so that equal steps share their curves. Side axes are
+    [left, right].
 
     Attributes
     ----------
-    stance
-        Side that bears through the whole step.
-    toe_off
-        Phase at which the swing foot leaves its foothold; 1 or more: it stays (standing).
-    foothold, foothold_heading
-        ``(2, 3)``, ``(2,)``: N and heading where each foot stands as the step begins.
-    target, target_heading
-        ``(3,)``, radians: where the swing foot lands at phase 1.
     phase
-        ``(T,)`` from 0 to 1.
+        ``(T,)`` from 0 to 1; holds the toe-off.
     center, heading, pelvis
         ``(T, 3)`` mid-point of the hips; ``(T,)`` heading of the walk, unwrapped; ``(T, 3)``
         rotation vector of the pelvis in the heading's frame.
@@ -62,12 +59,6 @@ class ReferenceStep:
         ``(T, U, 3)`` local rotation vectors of the upper body's joints.
     """
 
-    stance: int
-    toe_off: float
-    foothold: Float[np.ndarray, "2 3"]
-    foothold_heading: Float[np.ndarray, "2"]
-    target: Float[np.ndarray, "3"]
-    target_heading: float
     phase: Float[np.ndarray, "T"]
     center: Float[np.ndarray, "T 3"]
     heading: Float[np.ndarray, "T"]
@@ -82,22 +73,66 @@ class ReferenceStep:
     def __post_init__(self) -> None:
         """Copy, check and freeze the arrays."""
         n = len(self.phase)
-        shapes: dict[str, tuple[int | None, ...]] = {
-            "foothold": (2, 3),
-            "foothold_heading": (2,),
-            "target": (3,),
-            "phase": (n,),
-            **{name: (n, *shape) for name, shape in CURVES.items()},
-        }
-        for name, shape in shapes.items():
-            object.__setattr__(self, name, frozen_array(name, getattr(self, name), shape))
+        object.__setattr__(self, "phase", frozen_array("phase", self.phase, (n,)))
+        for name, shape in CURVES.items():
+            array = frozen_array(name, getattr(self, name), (n, *shape))
+            object.__setattr__(self, name, array)
         if self.phase[0] != 0.0 or self.phase[-1] != 1.0 or (np.diff(self.phase) <= 0.0).any():
             raise InvalidInputError("phase must rise from 0 to 1 without repeating")
-        if self.toe_off < 1.0 and self.toe_off not in self.phase:
+
+    def with_(self, **changes: object) -> StepCurves:
+        """Copy with some fields replaced; the copy is checked again."""
+        return replace(self, **changes)  # type: ignore[arg-type]
+
+    @cached_property
+    def end_speeds(self) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+        """Speed of the center at phase 0 and at phase 1, meters per step."""
+        first = parabola_slopes(self.phase[:3], self.center[:3])[0]
+        last = parabola_slopes(self.phase[-3:], self.center[-3:])[-1]
+        return first, last
+
+
+@dataclass(frozen=True, eq=False)
+class ReferenceStep:
+    """One step as a walker proposes it: its curves and where they belong.
+
+    Attributes
+    ----------
+    curves
+        Relative to ``origin``.
+    origin
+        ``(3,)`` world, meters.
+    stance
+        Side that bears through the whole step.
+    toe_off
+        Phase at which the swing foot leaves its foothold, one of ``curves.phase``; 1 or more:
+        it stays (standing).
+    foothold, foothold_heading
+        ``(2, 3)``, ``(2,)`` world: N and heading where [left, right] stand as the step begins.
+    target, target_heading
+        ``(3,)``, radians: where the swing foot lands at phase 1.
+    speed_change
+        What is added to the speed of the center at phase 0 and at phase 1, meters per step, so
+        that it joins its neighbors; the way there is a cubic that moves neither end.
+    """
+
+    curves: StepCurves
+    origin: Float[np.ndarray, "3"]
+    stance: int
+    toe_off: float
+    foothold: Float[np.ndarray, "2 3"]
+    foothold_heading: Float[np.ndarray, "2"]
+    target: Float[np.ndarray, "3"]
+    target_heading: float
+    speed_change: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] | None = None
+
+    def __post_init__(self) -> None:
+        """Check that the foot leaves on a sample."""
+        if self.toe_off < 1.0 and self.toe_off not in self.curves.phase:
             raise InvalidInputError("phase must hold toe_off, so that the foot leaves on a sample")
 
     def with_(self, **changes: object) -> ReferenceStep:
-        """Copy with some fields replaced; the copy is checked again."""
+        """Copy with some fields replaced."""
         return replace(self, **changes)  # type: ignore[arg-type]
 
 
@@ -113,13 +148,18 @@ class SwingEnd:
     def of(steps: Sequence[ReferenceStep], *, at_end: bool) -> SwingEnd:
         """Read it off the steps' own samples."""
         picks = [
-            (s, len(s.phase) - 1 if at_end else int(np.searchsorted(s.phase, min(s.toe_off, 1.0))))
+            (
+                s.curves,
+                1 - s.stance,
+                -1 if at_end else s.curves.phase.searchsorted(min(s.toe_off, 1.0)),
+            )
             for s in steps
         ]
+        origin = np.stack([s.origin for s in steps])
         return SwingEnd(
-            ankle=np.stack([s.ankle[i, 1 - s.stance] for s, i in picks]),
-            heading=np.array([s.foot_heading[i, 1 - s.stance] for s, i in picks]),
-            pitch=np.array([s.pitch[i, 1 - s.stance] for s, i in picks]),
+            ankle=origin + np.stack([c.ankle[i, side] for c, side, i in picks]),
+            heading=np.array([c.foot_heading[i, side] for c, side, i in picks]),
+            pitch=np.array([c.pitch[i, side] for c, side, i in picks]),
         )
 
 
@@ -184,16 +224,24 @@ def stack(steps: Sequence[ReferenceStep]) -> Proposal:
     last = len(steps) - 1
 
     def joined(name: str) -> Float[np.ndarray, "M ..."]:
-        parts = [getattr(s, name)[: None if i == last else -1] for i, s in enumerate(steps)]
+        parts = [getattr(s.curves, name)[: None if i == last else -1] for i, s in enumerate(steps)]
         return np.concatenate(parts)
 
-    counts = [len(s.phase) - (i != last) for i, s in enumerate(steps)]
+    counts = [len(s.curves.phase) - (i != last) for i, s in enumerate(steps)]
     index = np.repeat(np.arange(len(steps)), counts)
+    curves = {name: joined(name) for name in CURVES}
+    origin = np.stack([s.origin for s in steps])[index]
+    for name in PLACES:
+        curves[name] += origin if name == "center" else origin[:, None]
+    phase = joined("phase")
+    none = (np.zeros(3), np.zeros(3))
+    change = np.array([s.speed_change or none for s in steps])[index]
+    curves["center"] += end_slope_correction(phase, change[:, 0], change[:, 1])
     return Proposal(
-        at=joined("phase") + index,
-        phase=joined("phase"),
+        at=phase + index,
+        phase=phase,
         step=index,
-        curves={name: joined(name) for name in CURVES},
+        curves=curves,
         stance=np.array([s.stance for s in steps]),
         toe_off=np.array([s.toe_off for s in steps]),
         foothold=np.stack([s.foothold for s in steps]),

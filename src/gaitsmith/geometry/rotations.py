@@ -64,10 +64,14 @@ def about(axis: str, angle: Float[np.ndarray, "*n"] | float) -> Float[np.ndarray
 
 def exp(vector: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 4"]:
     """Rotation by ``|vector|`` radians about ``vector``; exact at and near zero."""
-    half = 0.5 * np.sqrt((vector * vector).sum(-1, keepdims=True))
+    x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
+    half = 0.5 * np.sqrt(x * x + y * y + z * z)
+    # sin(h) / 2h, which is 1/2 at zero
+    scale = 0.5 * np.sin(half) / np.where(half == 0.0, 1.0, half)
+    scale[half == 0.0] = 0.5
     out = np.empty((*vector.shape[:-1], 4))
-    out[..., :3] = 0.5 * np.sinc(half / np.pi) * vector
-    out[..., 3:] = np.cos(half)
+    np.multiply(vector, scale[..., None], out=out[..., :3])
+    np.cos(half, out=out[..., 3])
     return out
 
 
@@ -229,7 +233,7 @@ def sign_continuous(q: Float[np.ndarray, "frames *n 4"]) -> Float[np.ndarray, "f
     """Same rotations with signs such that consecutive quaternions lie in one half-sphere."""
     if len(q) < 2:
         return q
-    flip = (q[1:] * q[:-1]).sum(-1) < 0.0
+    flip = np.einsum("...c,...c->...", q[1:], q[:-1]) < 0.0
     if not flip.any():
         return q
     sign = np.where(np.cumsum(flip, axis=0) % 2 == 1, -1.0, 1.0)[..., None]

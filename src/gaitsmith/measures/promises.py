@@ -141,7 +141,7 @@ def _path_error(
         signed[start : start + block] = np.sign(s[:, 0] * off[:, 1] - s[:, 1] * off[:, 0]) * (
             np.linalg.norm(off, axis=-1)
         )
-    stride = int(round(2.0 * float(np.median(np.diff(labels.footstep_time[1:]))) * fps))
+    stride = round(2.0 * float(np.median(np.diff(labels.footstep_time[1:]))) * fps)
     if 1 < stride < len(way):
         signed = np.convolve(signed, np.ones(stride) / stride, mode="valid")
     return float(np.percentile(np.abs(signed), 95.0))

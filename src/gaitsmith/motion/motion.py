@@ -115,7 +115,7 @@ class Motion:
             raise InvalidInputError(
                 f"labels are of {len(self.labels.phase)} frames, the motion has {frames}"
             )
-        error = np.abs((rotations * rotations).sum(-1) - 1.0)
+        error = np.abs(np.einsum("fjc,fjc->fj", rotations, rotations) - 1.0)
         if error.size and error.max() > 2e-6:
             frame, joint = np.unravel_index(error.argmax(), error.shape)
             raise InvalidInputError(

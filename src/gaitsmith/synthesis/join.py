@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.geometry.curves import end_slope_correction, parabola_slopes
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -20,15 +18,11 @@ def join_speeds(steps: Sequence[ReferenceStep]) -> list[ReferenceStep]:
     Unequal steps meet with 15-20 % different speeds ([KB92b] erratum D17). Both sides take
     the mean; the change is a cubic over the whole step that moves neither end.
     """
-    slopes = [parabola_slopes(s.phase, s.center) for s in steps]
-    begins, ends = [m[0] for m in slopes], [m[-1] for m in slopes]
+    speeds = [s.curves.end_speeds for s in steps]
     out = []
     for i, step in enumerate(steps):
-        start = 0.5 * (ends[i - 1] - begins[i]) if i > 0 else np.zeros(3)
-        end = 0.5 * (begins[i + 1] - ends[i]) if i + 1 < len(steps) else np.zeros(3)
-        if not (start.any() or end.any()):
-            out.append(step)
-            continue
-        extra = end_slope_correction(step.phase, start, end)
-        out.append(step.with_(center=step.center + extra))
+        begins, ends = speeds[i]
+        start = 0.5 * (speeds[i - 1][1] - begins) if i > 0 else np.zeros(3)
+        end = 0.5 * (speeds[i + 1][0] - ends) if i + 1 < len(steps) else np.zeros(3)
+        out.append(step.with_(speed_change=(start, end)))
     return out

@@ -43,8 +43,9 @@ def sample_walk(
     for side, name in enumerate(SIDES):
         for part, turned in legs.items():
             rotations[:, skeleton.index(f"{name}{part}")] = turned[:, side]
-    upper = [skeleton.index(name) for name in upper_joints(body)]
-    rotations[:, upper] = exp(poses.upper)
+    for i, name in enumerate(upper_joints(body)):
+        if poses.upper[:, i].any():
+            rotations[:, skeleton.index(name)] = exp(poses.upper[:, i])
     return Motion(
         skeleton=skeleton,
         root_position=poses.center,

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
-from gaitsmith.contact import plan_contact
+from gaitsmith.contact import StepCurves, plan_contact
+from gaitsmith.contact.reference import CURVES
 from gaitsmith.synthesis.clock import Clock
 from gaitsmith.synthesis.join import join_speeds
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
@@ -132,23 +131,12 @@ def _stand_still(last: ReferenceStep) -> ReferenceStep:
     swing = 1 - last.stance
     foothold, heading = np.array(last.foothold), np.array(last.foothold_heading)
     foothold[swing], heading[swing] = last.target, last.target_heading
-
-    def still(values: Sequence[float] | Float[np.ndarray, "T ..."]) -> Float[np.ndarray, "2 ..."]:
-        return np.stack([np.asarray(values)[-1]] * 2)
-
-    none = np.zeros((2, 2))
+    still = {name: np.stack([getattr(last.curves, name)[-1]] * 2) for name in CURVES}
+    flat = dict.fromkeys(("pitch", "meta", "bend"), np.zeros((2, 2)))
     return last.with_(
+        speed_change=None,
+        curves=StepCurves(phase=np.array([0.0, 1.0]), **(still | flat)),
         toe_off=1.0,
         foothold=foothold,
         foothold_heading=heading,
-        phase=np.array([0.0, 1.0]),
-        center=still(last.center),
-        heading=still(last.heading),
-        pelvis=still(last.pelvis),
-        ankle=still(last.ankle),
-        foot_heading=still(last.foot_heading),
-        pitch=none,
-        meta=none,
-        bend=none,
-        upper=still(last.upper),
     )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.contact import ReferenceStep
+from gaitsmith.contact import ReferenceStep, StepCurves
 from gaitsmith.conventions import UP, ahead, leftward
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
@@ -57,6 +57,15 @@ class _Line:
         return float((foot.position - self.here) @ self.left)
 
 
+@dataclass(frozen=True)
+class _Setting:
+    """How a step lies on its line; pairs are (stance, swing). Equal settings share curves."""
+
+    direction: float
+    aside: tuple[float, float]
+    foot_heading: tuple[float, float]
+
+
 class StraightGenerator:
     """Walks straight plans with any :class:`~gaitsmith.walks.model.StraightWalk`.
 
@@ -94,60 +103,69 @@ class StraightGenerator:
             hip_height=state.hip_height,
             kind=step.kind,
         )
-        sagittal, overlay = self._drawn(body, _rounded(request))
-        reference = _in_world(step, line, sagittal, overlay)
+        setting = _Setting(
+            direction=step.stance.direction,
+            aside=(round(line.aside(step.stance), 12), round(line.aside(step.target), 12)),
+            foot_heading=(step.stance.heading, step.target.heading),
+        )
+        sagittal, curves = self._drawn(body, _rounded(request), setting)
+        stance, swing = step.stance.side, 1 - step.stance.side
+        foothold, heading = np.empty((2, 3)), np.empty(2)
+        foothold[stance], foothold[swing] = step.stance.position, step.origin.position
+        heading[stance], heading[swing] = step.stance.heading, step.origin.heading
+        reference = ReferenceStep(
+            curves=curves,
+            origin=line.here,
+            stance=stance,
+            toe_off=sagittal.toe_off,
+            foothold=foothold,
+            foothold_heading=heading,
+            target=step.target.position,
+            target_heading=step.target.heading,
+        )
         end = WalkerState(hip_height=float(sagittal.center[-1, 1]) - rise)
         return TabledStep(step.duration, end, reference, body, self._ground)
 
-    def _draw(self, body: Body, request: StepRequest) -> tuple[SagittalStep, Overlay]:
+    def _draw(
+        self, body: Body, request: StepRequest, setting: _Setting
+    ) -> tuple[SagittalStep, StepCurves]:
         sagittal = self._walk.step(body, request)
-        return sagittal, rule_overlay(body, request, sagittal, self._manner)
+        overlay = rule_overlay(body, request, sagittal, self._manner)
+        return sagittal, _curves(request.side, sagittal, overlay, setting)
 
 
 def _rounded(request: StepRequest) -> StepRequest:
     """Lengths to a picometer, so that equal steps are recognized and drawn once."""
-    values = {
-        name: round(value, 12)
-        for name in ("previous_length", "length", "next_length", "duration", "rise", "hip_height")
-        if (value := getattr(request, name)) is not None
-    }
-    return StepRequest(side=request.side, kind=request.kind, **{"hip_height": None, **values})
+    height = request.hip_height
+    return replace(
+        request,
+        previous_length=round(request.previous_length, 12),
+        length=round(request.length, 12),
+        next_length=round(request.next_length, 12),
+        duration=round(request.duration, 12),
+        rise=round(request.rise, 12),
+        hip_height=None if height is None else round(height, 12),
+    )
 
 
-def _in_world(
-    step: PlannedStep, line: _Line, sagittal: SagittalStep, overlay: Overlay
-) -> ReferenceStep:
-    """Put a sagittal step on its line."""
-    stance, swing = step.stance.side, 1 - step.stance.side
+def _curves(stance: int, sagittal: SagittalStep, overlay: Overlay, setting: _Setting) -> StepCurves:
+    """A sagittal step and its overlay about a point of the walk's line."""
     count = len(sagittal.phase)
+    forward, left = ahead(setting.direction), leftward(setting.direction)
 
-    def world(points: np.ndarray, aside: np.ndarray | float) -> np.ndarray:
+    def placed(points: np.ndarray, aside: np.ndarray | float) -> np.ndarray:
         side = np.broadcast_to(aside, (count,))[:, None]
-        return line.here + points[:, :1] * line.ahead + points[:, 1:] * UP + side * line.left
+        return points[:, :1] * forward + points[:, 1:] * UP + side * left
 
-    ankle = np.empty((count, 2, 3))
-    ankle[:, stance] = world(sagittal.ankle[:, 0], line.aside(step.stance))
-    ankle[:, swing] = world(sagittal.ankle[:, 1], line.aside(step.target))
     by_side = [0, 1] if stance == 0 else [1, 0]  # (stance, swing) to (left, right)
-    heading = np.empty((count, 2))
-    heading[:, stance], heading[:, swing] = step.stance.heading, step.target.heading
-    foothold = np.empty((2, 3))
-    foothold[stance], foothold[swing] = step.stance.position, step.origin.position
-    standing = np.empty(2)
-    standing[stance], standing[swing] = step.stance.heading, step.origin.heading
-    return ReferenceStep(
-        stance=stance,
-        toe_off=sagittal.toe_off,
-        foothold=foothold,
-        foothold_heading=standing,
-        target=step.target.position,
-        target_heading=step.target.heading,
+    ankles = [placed(sagittal.ankle[:, i], setting.aside[i]) for i in by_side]
+    return StepCurves(
         phase=sagittal.phase,
-        center=world(sagittal.center, overlay.sway),
-        heading=np.full(count, step.stance.direction),
+        center=placed(sagittal.center, overlay.sway),
+        heading=np.full(count, setting.direction),
         pelvis=overlay.pelvis,
-        ankle=ankle,
-        foot_heading=heading,
+        ankle=np.stack(ankles, axis=1),
+        foot_heading=np.tile([setting.foot_heading[i] for i in by_side], (count, 1)),
         pitch=sagittal.pitch[:, by_side],
         meta=sagittal.meta[:, by_side],
         bend=sagittal.bend[:, by_side],

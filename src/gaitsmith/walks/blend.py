@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -72,8 +73,5 @@ def blend(
 
 
 def _spread(marks: Float[np.ndarray, "k"]) -> Float[np.ndarray, "n"]:
-    pieces = [
-        np.linspace(x, y, SAMPLES, endpoint=False)
-        for x, y in zip(marks[:-1], marks[1:], strict=True)
-    ]
+    pieces = [np.linspace(x, y, SAMPLES, endpoint=False) for x, y in pairwise(marks)]
     return np.concatenate([*pieces, marks[-1:]])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -161,7 +162,7 @@ def _events(paths: dict[str, Float[np.ndarray, "n 2"]], rate: float) -> tuple[in
         before = np.flatnonzero(slow_toe[: peak + 1])
         if before.size:
             offs.append(int(before[-1]))
-    for first, last in zip(strikes, strikes[1:], strict=False):
+    for first, last in pairwise(strikes):
         inside = [o for o in offs if first < o < last]
         if inside:
             return first, last, inside[0]

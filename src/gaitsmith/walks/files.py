@@ -59,16 +59,15 @@ def walk_data_from_json(text: str, path: object = "walk data") -> WalkData:
             raise FileFormatError(path, f"format is {data['format']!r}, not {FORMAT!r}")
         character = dict(data["character"])
         character["gains"] = tuple(character["gains"])
+        fields: dict[str, Any] = dict(data["events"])
+        for name, s in data["sequences"].items():
+            fields[name] = TimedSequence(np.array(s["times"]), np.array(s["values"]))
         return WalkData(
             body=body_from_dict(data["body"]),
             previous_length=data["previous_length"],
             length=data["length"],
             character=Character(**character),
-            **data["events"],
-            **{
-                name: TimedSequence(np.array(s["times"]), np.array(s["values"]))
-                for name, s in data["sequences"].items()
-            },
+            **fields,
         )
     except (json.JSONDecodeError, KeyError, TypeError) as error:
         raise FileFormatError(path, f"not walk data: {error}") from None

@@ -61,7 +61,7 @@ def ankle_at_toe_off(
     [KB92b] lemma 1, Eqs. 32-33, with theta_b and the previous step length, which the print
     leaves out (erratum D5). ``pitch`` is the magnitude mu3, ``meta`` is mu4.
     """
-    ankle = roll(foot, np.float64(-pitch), np.float64(meta)).ankle
+    ankle = roll(foot, -pitch, meta).ankle
     return ankle - np.array([previous_length, 0.0])
 
 
@@ -70,7 +70,7 @@ def ankle_at_heel_strike(foot: Foot, length: float, pitch: float) -> Float[np.nd
 
     [KB92b] lemma 1, Eqs. 34-35. ``pitch`` is mu2.
     """
-    return roll(foot, np.float64(pitch), np.float64(0.0)).ankle + np.array([length, 0.0])
+    return roll(foot, pitch, 0.0).ankle + np.array([length, 0.0])
 
 
 def hip_height(character: Character, body: Body, length: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -184,7 +185,7 @@ def phase_grid(*events: float) -> Float[np.ndarray, "T"]:
     marks = np.array(sorted({0.0, 1.0, *(e for e in events if 0.0 < e < 1.0)}))
     pieces = [
         np.linspace(a, b, max(2, int(np.ceil((b - a) * SAMPLES)) + 1))[:-1]
-        for a, b in zip(marks[:-1], marks[1:], strict=True)
+        for a, b in pairwise(marks)
     ]
     return np.concatenate([*pieces, [1.0]])
 
