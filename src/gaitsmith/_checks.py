@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeGuard
 
 import numpy as np
 
@@ -16,9 +16,12 @@ if TYPE_CHECKING:
 def frozen_array(
     name: str, value: ArrayLike, shape: tuple[int | None, ...], dtype: DTypeLike = np.float64
 ) -> Shaped[np.ndarray, "..."]:
-    """Copy ``value`` to a read-only array of ``shape`` (None: any size); finite or refused."""
+    """Copy ``value`` to a read-only array of ``shape`` (None: any size); finite or refused.
+
+    An array that is read-only already and owns its memory is taken as it is.
+    """
     try:
-        array = np.array(value, dtype=dtype, order="C")
+        array = value if _is_frozen(value, dtype) else np.array(value, dtype=dtype, order="C")
     except (TypeError, ValueError) as error:
         raise InvalidInputError(f"{name} must be an array of numbers: {error}") from None
     if array.ndim != len(shape) or any(
@@ -31,6 +34,16 @@ def frozen_array(
         raise InvalidInputError(f"{name} must be finite, but {name}{list(first)} is {array[first]}")
     array.flags.writeable = False
     return array
+
+
+def _is_frozen(value: ArrayLike, dtype: DTypeLike) -> TypeGuard[np.ndarray]:
+    return (
+        isinstance(value, np.ndarray)
+        and not value.flags.writeable
+        and value.base is None
+        and value.flags.c_contiguous
+        and value.dtype == dtype
+    )
 
 
 def number(name: str, value: float, unit: str) -> float:

@@ -67,8 +67,7 @@ def exp(vector: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 4"]:
     x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
     half = 0.5 * np.sqrt(x * x + y * y + z * z)
     # sin(h) / 2h, which is 1/2 at zero
-    scale = 0.5 * np.sin(half) / np.where(half == 0.0, 1.0, half)
-    scale[half == 0.0] = 0.5
+    scale = np.where(half == 0.0, 0.5, 0.5 * np.sin(half) / np.where(half == 0.0, 1.0, half))
     out = np.empty((*vector.shape[:-1], 4))
     np.multiply(vector, scale[..., None], out=out[..., :3])
     np.cos(half, out=out[..., 3])

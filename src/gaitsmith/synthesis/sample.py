@@ -46,10 +46,12 @@ def sample_walk(
     for i, name in enumerate(upper_joints(body)):
         if poses.upper[:, i].any():
             rotations[:, skeleton.index(name)] = exp(poses.upper[:, i])
+    rotations = sign_continuous(rotations)
+    rotations.flags.writeable = False  # so that the motion need not copy it
     return Motion(
         skeleton=skeleton,
         root_position=poses.center,
-        rotations=sign_continuous(rotations),
+        rotations=rotations,
         fps=fps,
         contacts=poses.contacts,
         labels=_labels(walk, ground, times, recipe),

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.body.sole import roll
+from gaitsmith.body.sole import rolled_ankle
 from gaitsmith.errors import InfeasibleStepError, InvalidInputError
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def ankle_at_toe_off(
     [KB92b] lemma 1, Eqs. 32-33, with theta_b and the previous step length, which the print
     leaves out (erratum D5). ``pitch`` is the magnitude mu3, ``meta`` is mu4.
     """
-    ankle = roll(foot, -pitch, meta).ankle
+    ankle = rolled_ankle(foot, -pitch, meta)
     return ankle - np.array([previous_length, 0.0])
 
 
@@ -70,7 +70,7 @@ def ankle_at_heel_strike(foot: Foot, length: float, pitch: float) -> Float[np.nd
 
     [KB92b] lemma 1, Eqs. 34-35. ``pitch`` is mu2.
     """
-    return roll(foot, pitch, 0.0).ankle + np.array([length, 0.0])
+    return rolled_ankle(foot, pitch, 0.0) + np.array([length, 0.0])
 
 
 def hip_height(character: Character, body: Body, length: float) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.body.sole import roll
+from gaitsmith.body.sole import rolled_ankle
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.walks.blend import blend
@@ -61,6 +61,7 @@ class KinematicWalk:
         if not prototypes:
             raise InvalidInputError("a kinematic walk needs at least one measured step")
         self._prototypes = tuple(sorted(prototypes, key=lambda w: w.character.ratio))
+        self._dense = tuple(densified(w) for w in self._prototypes)
         self._cached = lru_cache(maxsize=512)(self._step)
 
     @property
@@ -75,62 +76,63 @@ class KinematicWalk:
     def walk_data(
         self, body: Body, previous_length: float, length: float, start_height: float | None = None
     ) -> WalkData:
-        """Generalized walk data for one step of ``body``; lengths in meters, above zero."""
+        """Generalized walk data for one step of ``body``; lengths in meters, above zero.
+
+        Sampled on :func:`phase_grid` of its events.
+        """
         ratio = length / body.leg_length
         ratios = [w.character.ratio for w in self._prototypes]
         right = int(np.searchsorted(ratios, ratio))
-        around = self._prototypes[max(right - 1, 0) : right + 1]
+        around = self._dense[max(right - 1, 0) : right + 1]
         walks = [
             generalize(w, body, previous_length, length, start_height=start_height) for w in around
         ]
         if len(walks) == 1:
             return walks[0]
         share = (ratio - ratios[right - 1]) / (ratios[right] - ratios[right - 1])
-        return blend(walks[0], walks[1], share, start_height=start_height)
+        return densified(blend(walks[0], walks[1], share, start_height=start_height))
 
     def _step(self, body: Body, request: StepRequest) -> SagittalStep:
         for length in (request.previous_length, request.length):
             check_step_length(body, length)
         if request.kind == "start":
-            return _sample(*self._start(body, request), "start")
+            return self._start(body, request)
         if request.kind == "stop":
-            return _sample(*self._stop(body, request), "stop")
-        previous, length = request.previous_length, request.length
-        walk = self.walk_data(body, previous, length, request.hip_height)
-        return _sample(walk, *_rear(walk, previous), "walk")
+            return self._stop(body, request)
+        previous = request.previous_length
+        walk = self.walk_data(body, previous, request.length, request.hip_height)
+        return _sagittal(walk, *_rear(walk, previous), previous=previous)
 
-    def _start(
-        self, body: Body, request: StepRequest
-    ) -> tuple[WalkData, TimedSequence, TimedSequence]:
-        """Data of a step from standing, and pitch and meta of the foot that starts."""
+    def _start(self, body: Body, request: StepRequest) -> SagittalStep:
+        """From standing: the first foot leaves as in a walk with somewhat shorter steps."""
         length = request.length
         before = START_SHARE * length
         stand = standing_height(body) if request.hip_height is None else request.hip_height
         walk = self.walk_data(body, before, length, stand)
         kappa = walk.character.kappa
         _, _, off, meta = mu(walk.character, body, before)
-        hip = np.array(walk.hip.values)
+        hip, ankle = np.array(walk.hip.values), np.array(walk.ankle.values)
         hip[:, 0] = affine(hip[:, 0], 0.0, (1.0 - kappa) * length)
-        ankle = np.array(walk.ankle.values)
-        ankle[:, 0] = affine(
-            ankle[:, 0], ankle_at_toe_off(body.foot, 0.0, off, meta)[0], ankle[-1, 0]
-        )
-        pitch, toes = _rear(walk, before)
+        left = ankle_at_toe_off(body.foot, 0.0, off, meta)
+        ankle[:, 0] = affine(ankle[:, 0], left[0], ankle[-1, 0])
         # the foot stands flat at first: take the part it would already have turned away
-        fade = 1.0 - smoothstep(pitch.times / walk.toe_off)[:, None]
-        pitch = pitch.with_values(np.minimum(pitch.values - pitch.values[0] * fade, 0.0))
-        toes = toes.with_values(np.maximum(toes.values - toes.values[0] * fade, 0.0))
+        pitch, toes = _rear(walk, before)
+        fade = 1.0 - smoothstep(np.linspace(0.0, 1.0, len(pitch)))
         walk = walk.with_(
             hip=walk.hip.with_values(hip),
             ankle=walk.ankle.with_values(ankle),
             foot1=walk.foot1.with_values(np.zeros_like(walk.foot1.values)),
         )
-        return walk, pitch, toes
+        return _sagittal(
+            walk,
+            np.minimum(pitch - pitch[0] * fade, 0.0),
+            np.maximum(toes - toes[0] * fade, 0.0),
+            previous=0.0,
+            flat=0.0,
+        )
 
-    def _stop(
-        self, body: Body, request: StepRequest
-    ) -> tuple[WalkData, TimedSequence, TimedSequence]:
-        """Data of the step that closes to standing, and pitch and meta of the rear foot."""
+    def _stop(self, body: Body, request: StepRequest) -> SagittalStep:
+        """To standing: the rear foot closes beside the other, which stays flat."""
         previous = request.previous_length
         walk = self.walk_data(body, previous, START_SHARE * previous, request.hip_height)
         _, _, off, meta = mu(walk.character, body, previous)
@@ -151,33 +153,12 @@ class KinematicWalk:
             foot3=walk.foot3.with_values(swing),
             meta=walk.meta.with_values(np.zeros_like(walk.meta.values)),
         )
-        return walk, *rear
+        return _sagittal(walk, *rear, previous=previous, heel_off=1.0, meta_off=1.0)
 
 
 def standing_height(body: Body) -> float:
     """Height of the hips in standing, feet together, meters."""
     return body.foot.ankle_height + STANDING_REACH * body.leg_length
-
-
-def _rear(walk: WalkData, previous_length: float) -> tuple[TimedSequence, TimedSequence]:
-    """Pitch and meta of the rear foot on [0, TOM]: F2 and M of the step before.
-
-    That step had length ``previous_length``, so its sequences end at mu3 and mu4 of it
-    ([KB92b] uses the current length: erratum D6).
-    """
-    _, _, off, meta = mu(walk.character, walk.body, previous_length)
-    out = []
-    for sequence, end in ((walk.foot2, -off), (walk.meta, meta)):
-        last = sequence.values[-1, 0]
-        scaled = sequence.with_values(sequence.values * (end / last))
-        times = sequence.times[sequence.times > 1.0 + 1e-9]
-        times = np.concatenate([[1.0], times]) if sequence.times[0] <= 1.0 else times
-        late = scaled.at(times)
-        times = times - 1.0
-        if times[0] > 0.0:  # the toes begin to turn only now
-            times, late = np.concatenate([[0.0], times]), np.concatenate([[[0.0]], late])
-        out.append(TimedSequence(times, late))
-    return out[0], out[1]
 
 
 def phase_grid(*events: float) -> Float[np.ndarray, "T"]:
@@ -190,41 +171,78 @@ def phase_grid(*events: float) -> Float[np.ndarray, "T"]:
     return np.concatenate([*pieces, [1.0]])
 
 
-def _sample(
-    walk: WalkData, rear_pitch: TimedSequence, rear_meta: TimedSequence, kind: str
+def densified(walk: WalkData) -> WalkData:
+    """The same walk data read on the phase grid of its events, so that steps share samples.
+
+    Generalization carries samples over one by one, so it is done after this: a step costs no
+    interpolation.
+    """
+    off, meta = walk.toe_off, walk.meta_off
+    phase = phase_grid(walk.flat, walk.heel_off, meta, meta - 1.0, off)
+    later = 1.0 + phase[(phase > 0.0) & (phase <= off)]
+    times = {
+        "hip": phase,
+        "foot1": phase[phase <= walk.flat],
+        "foot2": np.concatenate([phase[phase >= walk.flat], later]),
+        "foot3": phase[phase >= off],
+        "meta": np.concatenate([phase[phase >= meta], later[later >= meta]]),
+        "ankle": phase[phase >= off],
+    }
+    return walk.with_(
+        **{name: TimedSequence(t, getattr(walk, name).at(t)) for name, t in times.items()}
+    )
+
+
+def _rear(
+    walk: WalkData, previous_length: float
+) -> tuple[Float[np.ndarray, "R"], Float[np.ndarray, "R"]]:
+    """Pitch and meta of the rear foot on the grid of [0, TOM]: F2 and M of the step before.
+
+    That step had length ``previous_length``, so its sequences end at mu3 and mu4 of it
+    ([KB92b] uses the current length: erratum D6).
+    """
+    _, _, off, meta = mu(walk.character, walk.body, previous_length)
+    count = int((walk.hip.times <= walk.toe_off).sum())
+    pitch = walk.foot2.values[-count:, 0] * (-off / walk.foot2.values[-1, 0])
+    toes = np.zeros(count)
+    late = walk.meta.values[-count:, 0]
+    toes[count - len(late) :] = late * (meta / late[-1])
+    return pitch, toes
+
+
+def _sagittal(
+    walk: WalkData,
+    rear_pitch: Float[np.ndarray, "R"],
+    rear_meta: Float[np.ndarray, "R"],
+    *,
+    previous: float,
+    flat: float | None = None,
+    heel_off: float | None = None,
+    meta_off: float | None = None,
 ) -> SagittalStep:
-    """Both feet and the hips on one phase grid."""
-    foot, start, stop = walk.body.foot, kind == "start", kind == "stop"
-    flat = 0.0 if start else walk.flat
-    heel_off, meta_off = (1.0, 1.0) if stop else (walk.heel_off, walk.meta_off)
-    phase = phase_grid(flat, heel_off, meta_off, walk.toe_off, max(rear_meta.times[0], 0.0))
-    rear, landing = phase <= walk.toe_off, phase <= walk.flat
-    raising, turning = phase >= walk.flat, phase >= meta_off
-
-    pitch, meta = np.zeros((2, len(phase), 2))
-    pitch[landing, 0] = walk.foot1.at(phase[landing])[:, 0]
-    pitch[raising, 0] = walk.foot2.at(phase[raising])[:, 0]
-    meta[turning, 0] = walk.meta.at(phase[turning])[:, 0]
-    pitch[rear, 1] = rear_pitch.at(phase[rear])[:, 0]
-    pitch[~rear, 1] = walk.foot3.at(phase[~rear])[:, 0]
-    meta[rear, 1] = rear_meta.at(phase[rear])[:, 0]
-    previous = 0.0 if start else walk.previous_length
+    """Both feet and the hips on the grid of ``walk``, which is densified."""
+    foot, phase = walk.body.foot, walk.hip.times
+    count, rear, landing = len(phase), len(rear_pitch), len(walk.foot1.values)
+    pitch, meta = np.zeros((2, count, 2))
+    pitch[:landing, 0] = walk.foot1.values[:, 0]
+    pitch[landing - 1 :, 0] = walk.foot2.values[: count - landing + 1, 0]
+    turning = int((walk.meta.times <= 1.0).sum())
+    meta[count - turning :, 0] = walk.meta.values[:turning, 0]
+    pitch[:rear, 1], meta[:rear, 1] = rear_pitch, rear_meta
+    pitch[rear:, 1] = walk.foot3.values[1:, 0]
     bend = np.where(pitch < 0.0, -pitch - meta, 0.0)
-    at_off = int(np.flatnonzero(rear)[-1])
-    swing = (phase - walk.toe_off) / (1.0 - walk.toe_off)
-    relaxing = bend[at_off, 1] * (1.0 - smoothstep(swing / TOES_STRAIGHT))
-    bend[~rear, 1] = relaxing[~rear]
-
-    ankle = roll(foot, pitch, meta).ankle
+    swing = (phase[rear:] - walk.toe_off) / (1.0 - walk.toe_off)
+    bend[rear:, 1] = bend[rear - 1, 1] * (1.0 - smoothstep(swing / TOES_STRAIGHT))
+    ankle = rolled_ankle(foot, pitch, meta)
     ankle[:, 1, 0] -= previous
-    ankle[~rear, 1] = walk.ankle.at(phase[~rear])
+    ankle[rear:, 1] = walk.ankle.values[1:]
     return SagittalStep(
         phase=phase,
-        flat=flat,
-        heel_off=heel_off,
-        meta_off=meta_off,
+        flat=walk.flat if flat is None else flat,
+        heel_off=walk.heel_off if heel_off is None else heel_off,
+        meta_off=walk.meta_off if meta_off is None else meta_off,
         toe_off=walk.toe_off,
-        center=walk.hip.at(phase),
+        center=walk.hip.values,
         ankle=ankle,
         pitch=pitch,
         meta=meta,

@@ -1,0 +1,126 @@
+"""Speed as ratios within one run: `make bench`.
+
+Absolute times differ from machine to machine and from minute to minute; what is measured here
+is always divided by something measured in the same run. Medians of CPU time (processes: user
+plus system time), the two sides of each ratio taken in turn.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+import gaitsmith
+from gaitsmith.io.bvh import write_bvh
+from gaitsmith.motion.kinematics import forward_kinematics
+from gaitsmith.walks import winter
+from gaitsmith.walks.generalize import generalize
+
+REPEATS = 9
+#: Distance that makes a clip of about 20,000 frames at 120 frames per second.
+LONG = 224.0
+
+
+def cpu(run) -> float:
+    start = time.process_time()
+    run()
+    return time.process_time() - start
+
+
+def ratio(run, yardstick, repeats: int = REPEATS) -> tuple[float, float, float]:
+    """Median of ``run``, of ``yardstick``, and of their ratios pair by pair."""
+    run(), yardstick()
+    pairs = [(cpu(run), cpu(yardstick)) for _ in range(repeats)]
+    return (
+        statistics.median(a for a, _ in pairs),
+        statistics.median(b for _, b in pairs),
+        statistics.median(a / b for a, b in pairs),
+    )
+
+
+def process(*command: str) -> None:
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def children(run) -> float:
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    run()
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def process_ratio(command: list[str], yardstick: list[str]) -> float:
+    process(*command), process(*yardstick)
+    pairs = [
+        (children(lambda: process(*command)), children(lambda: process(*yardstick)))
+        for _ in range(REPEATS)
+    ]
+    return statistics.median(a / b for a, b in pairs)
+
+
+def row(what: str, value: float, bar: float | None, note: str = "") -> None:
+    limit = "" if bar is None else f"bar {bar:g}"
+    mark = "" if bar is None or value <= bar else "  ABOVE"
+    print(f"{what:58s} {value:8.2f}   {limit:10s}{mark} {note}")
+
+
+def main() -> None:
+    print(f"Python {platform.python_version()}, NumPy {np.__version__}, {os.cpu_count()} cores")
+    motion = gaitsmith.walk(distance=LONG, fps=120)
+    frames = len(motion)
+
+    def kinematics() -> None:
+        forward_kinematics(motion.skeleton, motion.root_position, motion.rotations)
+
+    own, yard, times = ratio(lambda: gaitsmith.walk(distance=LONG, fps=120), kinematics)
+    row(
+        f"walk, {frames} frames / forward kinematics of the clip",
+        times,
+        7.0,
+        f"{1e6 * own / frames:.1f} us against {1e6 * yard / frames:.1f} us a frame",
+    )
+
+    with tempfile.TemporaryDirectory() as folder:
+        target = Path(folder) / "a.bvh"
+        table = np.concatenate(
+            [motion.root_position, motion.rotations[..., :3].reshape(frames, -1)], axis=1
+        )
+        own, yard, times = ratio(
+            lambda: write_bvh(motion, target),
+            lambda: np.savetxt(Path(folder) / "b.txt", table, fmt="%.6f"),
+            repeats=5,
+        )
+        row("write BVH / numpy.savetxt of as many numbers", times, 0.9)
+
+    walk = winter()
+    body = gaitsmith.body_from(1.6)
+    data = walk.prototypes[0]
+    own, _, times = ratio(
+        lambda: [generalize(data, body, 0.6, 0.65) for _ in range(200)], kinematics
+    )
+    row("one step generalized, us", 1e6 * own / 200, None)
+
+    numpy = [sys.executable, "-c", "import numpy"]
+    command = [str(Path(sys.executable).with_name("gaitsmith"))]
+    row("--help / python -c 'import numpy'", process_ratio([*command, "--help"], numpy), 0.7)
+    row(
+        "import gaitsmith / import numpy",
+        process_ratio([sys.executable, "-c", "import gaitsmith"], numpy),
+        1.3,
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        ten_seconds = [*command, "walk", "--distance", "12.3", "-o", f"{folder}/walk.bvh"]
+        row("10 s walk to BVH / python -c 'import numpy'", process_ratio(ten_seconds, numpy), 4.0)
+
+
+if __name__ == "__main__":
+    main()

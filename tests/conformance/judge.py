@@ -1,0 +1,215 @@
+"""An independent judge of generated motions: design section 6 on level ground.
+
+It reads the skeleton, the rotations, the root, the flags and the labels of a motion and
+computes everything else anew; it imports no kinematics of the package.
+"""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+SIDES = ("left", "right")
+HEEL, BALL, TOE = 0, 1, 2
+#: Promise: (bar, whether the figure must be at most or at least the bar).
+BARS = {
+    "slip_mm": (0.5, "most"),
+    "penetration_mm": (0.5, "most"),
+    "float_mm": (1.0, "most"),
+    "bone_error_mm": (1e-6, "most"),
+    "stance_knee_deg": (3.0, "least"),
+    "knee_backward_mm": (0.0, "most"),
+    "joint_deg_per_60th": (20.0, "most"),
+    "quaternion_flips": (0, "most"),
+    "quaternion_norm_error": (1e-9, "most"),
+    "unsupported_frames": (0, "most"),
+    "unflagged_bearing": (0, "most"),
+    "flat_without_all_flags": (0, "most"),
+    "footstep_error_mm": (1e-3, "most"),
+    "footstep_heading_error_rad": (1e-6, "most"),
+    "footsteps_unseen": (2, "most"),
+    "landings_at_wrong_frames": (0, "most"),
+    "label_errors": (0, "most"),
+}
+
+
+def posed(motion):
+    """World positions (F, J, 3), world rotations per joint, sole points (F, 2, 3, 3)."""
+    skeleton = motion.skeleton
+    offsets, tips = np.array(skeleton.offsets), np.array(skeleton.soles)  # SciPy takes no read-only ones
+    quaternions = np.array(motion.rotations)
+    positions = np.empty((len(motion), len(skeleton), 3))
+    world = []
+    for joint, parent in enumerate(skeleton.parents):
+        local = Rotation.from_quat(quaternions[:, joint])
+        if parent < 0:
+            positions[:, joint] = motion.root_position
+            world.append(local)
+        else:
+            positions[:, joint] = positions[:, parent] + world[parent].apply(offsets[joint])
+            world.append(world[parent] * local)
+    soles = np.empty((len(motion), 2, 3, 3))
+    for side, name in enumerate(SIDES):
+        for point, part in enumerate(("Foot", "Foot", "Toes")):
+            joint = skeleton.index(name + part)
+            soles[:, side, point] = positions[:, joint] + world[joint].apply(tips[side, point])
+    return positions, world, soles
+
+
+def runs(flags):
+    """[start, stop) of each run of True."""
+    return np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]]))).reshape(-1, 2)
+
+
+def seen_footsteps(motion, positions, soles):
+    """Per footstep: N and heading in every frame in which heel and ball bear, or None."""
+    labels, out = motion.labels, []
+    for i, (side, when) in enumerate(
+        zip(labels.footstep_side, labels.footstep_time, strict=True)
+    ):
+        again = np.flatnonzero(labels.footstep_side[i + 1 :] == side)
+        until = labels.footstep_time[i + 1 + again[0]] if again.size else np.inf
+        times = np.arange(len(motion)) / motion.fps
+        here = (times >= when - 1e-6) & (times < until - 1e-6)
+        here &= motion.contacts[:, side, HEEL] & motion.contacts[:, side, BALL]
+        if not here.any():
+            out.append(None)
+            continue
+        heel, ball = soles[here, side, HEEL], soles[here, side, BALL]
+        ankle = positions[here, motion.skeleton.index(f"{SIDES[side]}Foot")]
+        along = (ball - heel) / np.linalg.norm(ball - heel, axis=-1, keepdims=True)
+        foot = heel + ((ankle - heel) * along).sum(-1, keepdims=True) * along
+        out.append((foot, np.arctan2(along[:, 0], along[:, 2])))
+    return out
+
+
+def judge(motion):
+    """Every figure of :data:`BARS`."""
+    assert np.isfinite(motion.rotations).all()
+    assert np.isfinite(motion.root_position).all()
+    positions, world, soles = posed(motion)
+    ground = json.loads(motion.labels.ground)
+    assert ground["kind"] == "flat", "this judge knows level ground only"
+    above, down = soles[..., 1] - ground["height"], motion.contacts
+    return {
+        **_feet(soles, above, down),
+        **_legs(motion, positions, world, down),
+        **_smoothness(motion),
+        **_footsteps(motion, positions, soles),
+        **_landings(motion),
+        "label_errors": _label_errors(motion),
+    }
+
+
+def broken(motion, *, but=()):
+    """The promises that fall short, with their figures; those named ``but`` are not asked."""
+    figures = judge(motion)
+    assert figures.keys() == BARS.keys()
+    return {
+        name: figures[name]
+        for name, (bar, which) in BARS.items()
+        if name not in but
+        and not (figures[name] <= bar if which == "most" else figures[name] >= bar)
+    }
+
+
+def _feet(soles, above, down):
+    slip = 0.0
+    for side in range(2):
+        for point in range(3):
+            for a, b in runs(down[:, side, point]):
+                path = soles[a:b, side, point]
+                slip = max(slip, np.linalg.norm(path - path[0], axis=-1).max())
+    still = np.linalg.norm(np.diff(soles, axis=0), axis=-1) < 1e-10
+    touches = np.abs(above) < 1e-10
+    bears = still & touches[1:] & touches[:-1]
+    flat = down[..., HEEL] & down[..., BALL]
+    return {
+        "slip_mm": 1e3 * slip,
+        "penetration_mm": 1e3 * max(0.0, -above.min()),
+        "float_mm": 1e3 * np.abs(above[down]).max(),
+        "unsupported_frames": int((~down.any((1, 2))).sum()),
+        "unflagged_bearing": int((bears & ~(down[1:] & down[:-1])).sum()),
+        "flat_without_all_flags": int((flat & ~down[..., TOE]).sum()),
+    }
+
+
+def _legs(motion, positions, world, down):
+    skeleton, least, backward, bones = motion.skeleton, np.inf, 0.0, 0.0
+    for side, name in enumerate(SIDES):
+        hip, knee, ankle = (
+            positions[:, skeleton.index(name + part)] for part in ("UpperLeg", "LowerLeg", "Foot")
+        )
+        thigh, shin = knee - hip, ankle - knee
+        for bone, part in ((thigh, "LowerLeg"), (shin, "Foot")):
+            rest = np.linalg.norm(skeleton.offsets[skeleton.index(name + part)])
+            bones = max(bones, np.abs(np.linalg.norm(bone, axis=-1) - rest).max())
+        sine = np.linalg.norm(np.cross(thigh, shin), axis=-1)
+        flexion = np.degrees(np.arctan2(sine, (thigh * shin).sum(-1)))
+        least = min(least, flexion[down[:, side].any(-1)].min(initial=np.inf))
+        # the knee lies before the line from hip to ankle, as the pelvis sees it
+        line = ankle - hip
+        share = ((knee - hip) * line).sum(-1, keepdims=True) / (line**2).sum(-1, keepdims=True)
+        bulge = (knee - hip - share * line) * world[0].apply([0.0, 0.0, 1.0])
+        backward = max(backward, -bulge.sum(-1).min())
+    return {
+        "bone_error_mm": 1e3 * bones,
+        "stance_knee_deg": least,
+        "knee_backward_mm": 1e3 * backward,
+    }
+
+
+def _smoothness(motion):
+    q, fps = motion.rotations, motion.fps
+    apart = max(1, round(fps / 60.0))
+    between = q[apart:] - q[:-apart]
+    other = q[apart:] + q[:-apart]
+    chord = np.minimum(np.linalg.norm(between, axis=-1), np.linalg.norm(other, axis=-1))
+    turn = 4.0 * np.arcsin(np.clip(0.5 * chord, 0.0, 1.0))
+    return {
+        "joint_deg_per_60th": float(np.degrees(turn).max(initial=0.0)) * fps / (60.0 * apart),
+        "quaternion_flips": int(((q[1:] * q[:-1]).sum(-1) < 0.0).sum()),
+        "quaternion_norm_error": float(np.abs(np.linalg.norm(q, axis=-1) - 1.0).max()),
+    }
+
+
+def _footsteps(motion, positions, soles):
+    error, turned, unseen = 0.0, 0.0, 0
+    seen = seen_footsteps(motion, positions, soles)
+    for i, found in enumerate(seen):
+        if found is None:
+            unseen += 1
+            continue
+        foot, heading = found
+        off = np.linalg.norm(foot - motion.labels.footstep_position[i], axis=-1)
+        apart = np.angle(np.exp(1j * (heading - motion.labels.footstep_heading[i])))
+        error, turned = max(error, off.max()), max(turned, np.abs(apart).max())
+    return {
+        "footstep_error_mm": 1e3 * error,
+        "footstep_heading_error_rad": turned,
+        "footsteps_unseen": unseen,
+    }
+
+
+def _landings(motion):
+    """Footsteps whose contact does not begin in the first frame at or after their time."""
+    labels, wrong = motion.labels, 0
+    for side, when in zip(labels.footstep_side[2:], labels.footstep_time[2:], strict=True):
+        first = int(np.ceil(when * motion.fps - 1e-6))
+        if first < len(motion) and not motion.contacts[first, side].any():
+            wrong += 1
+        if motion.contacts[first - 1, side].any():
+            wrong += 1
+    return {"landings_at_wrong_frames": wrong}
+
+
+def _label_errors(motion):
+    """Frames whose step or phase is not what the footsteps' times say."""
+    labels = motion.labels
+    times, landed = np.arange(len(motion)) / motion.fps, labels.footstep_time
+    step = np.clip(np.searchsorted(landed, times + 1e-9, side="right"), 2, len(landed) - 1)
+    since = (times - landed[step - 1]) / (landed[step] - landed[step - 1])
+    wrong = (labels.step != step) | (np.abs(labels.phase - np.clip(since, 0.0, 1.0)) > 1e-6)
+    return int(wrong.sum())
