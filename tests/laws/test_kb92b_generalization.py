@@ -25,7 +25,7 @@ from gaitsmith.walks.generalize import (
 )
 
 #: Ratios of steps of one body that stay within those for which the laws are asserted.
-rho = st.floats(0.75, 1.35)
+rho = st.floats(0.87, 1.15)
 scales = st.floats(0.6, 1.6)
 
 

@@ -79,9 +79,9 @@ class Character:
     off_pitch: float
     off_meta: float
     kappa: float
-    gains: tuple[float, float, float, float] = (0.15, 0.35, 0.50, 0.30)
+    gains: tuple[float, float, float, float] = (0.15, 0.35, 0.75, 0.55)
     bounce_power: float = 2.0
-    swing_power: float = 0.5
+    swing_power: float = 1.0
 
     def __post_init__(self) -> None:
         """Check ranges."""

@@ -112,9 +112,14 @@ class KinematicWalk:
         kappa = walk.character.kappa
         _, _, off, meta = mu(walk.character, body, before)
         hip, ankle = np.array(walk.hip.values), np.array(walk.ankle.values)
+        bounce, swing = _of_half_a_stride(walk)
         hip[:, 0] = affine(hip[:, 0], 0.0, (1.0 - kappa) * length)
+        hip[:, 1] = arc(walk.hip.unit, hip[:, 1], hip[0, 1], hip[-1, 1], bounce)
         left = ankle_at_toe_off(body.foot, 0.0, off, meta)
         ankle[:, 0] = affine(ankle[:, 0], left[0], ankle[-1, 0])
+        ankle[:, 1] = arc(walk.ankle.unit, ankle[:, 1], left[1], ankle[-1, 1], swing)
+        turn = walk.foot3.values[:, 0]
+        turn = arc(walk.foot3.unit, turn, turn[0], turn[-1], swing)
         # the foot stands flat at first: take the part it would already have turned away
         pitch, toes = _rear(walk, before)
         fade = 1.0 - smoothstep(np.linspace(0.0, 1.0, len(pitch)))
@@ -122,6 +127,7 @@ class KinematicWalk:
             hip=walk.hip.with_values(hip),
             ankle=walk.ankle.with_values(ankle),
             foot1=walk.foot1.with_values(np.zeros_like(walk.foot1.values)),
+            foot3=walk.foot3.with_values(turn),
         )
         return _sagittal(
             walk,
@@ -139,21 +145,28 @@ class KinematicWalk:
         kappa = walk.character.kappa
         hip, ankle = np.array(walk.hip.values), np.array(walk.ankle.values)
         hip[:, 0] = affine(hip[:, 0], -kappa * previous, 0.0)
-        hip[:, 1] = arc(walk.hip.unit, hip[:, 1], hip[0, 1], standing_height(body))
+        bounce, swing = _of_half_a_stride(walk)
+        hip[:, 1] = arc(walk.hip.unit, hip[:, 1], hip[0, 1], standing_height(body), bounce)
         start = ankle_at_toe_off(body.foot, previous, off, meta)
         end = ankle_at_heel_strike(body.foot, 0.0, 0.0)
         ankle[:, 0] = affine(ankle[:, 0], start[0], end[0])
-        ankle[:, 1] = arc(walk.ankle.unit, ankle[:, 1], start[1], end[1])
-        swing = arc(walk.foot3.unit, walk.foot3.values[:, 0], -off, 0.0)
+        ankle[:, 1] = arc(walk.ankle.unit, ankle[:, 1], start[1], end[1], swing)
+        turn = arc(walk.foot3.unit, walk.foot3.values[:, 0], -off, 0.0, swing)
         rear = _rear(walk, previous)
         walk = walk.with_(
             hip=walk.hip.with_values(hip),
             ankle=walk.ankle.with_values(ankle),
             foot2=walk.foot2.with_values(np.zeros_like(walk.foot2.values)),
-            foot3=walk.foot3.with_values(swing),
+            foot3=walk.foot3.with_values(turn),
             meta=walk.meta.with_values(np.zeros_like(walk.meta.values)),
         )
         return _sagittal(walk, *rear, previous=previous, heel_off=1.0, meta_off=1.0)
+
+
+def _of_half_a_stride(walk: WalkData) -> tuple[float, float]:
+    """What is left of bounce and swing where one of the stride's two steps has no length."""
+    share = max(walk.previous_length, walk.length) / (walk.previous_length + walk.length)
+    return share**walk.character.bounce_power, share**walk.character.swing_power
 
 
 def standing_height(body: Body) -> float:
