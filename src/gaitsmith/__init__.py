@@ -61,31 +61,31 @@ _HOMES = {
 }
 
 __all__ = [
+    "__version__",
     "BODIES",
-    "GROUNDS",
-    "WALKS",
     "Body",
+    "body_from",
     "Cycle",
     "FileFormatError",
     "Foot",
     "GaitsmithError",
     "GaitsmithWarning",
     "Ground",
+    "GROUNDS",
     "InfeasibleError",
     "InvalidInputError",
     "Labels",
+    "load",
     "Manner",
     "Markers",
     "Motion",
-    "Skeleton",
-    "StraightWalk",
-    "__version__",
-    "body_from",
-    "load",
     "regenerate",
     "save",
     "save_all",
+    "Skeleton",
+    "StraightWalk",
     "walk",
+    "WALKS",
 ]
 
 

@@ -20,6 +20,9 @@ TOE_OFF, LONGEST = 0.125, 1.0
 class CompassWalk:
     """Stiff legs on a pivot; starting and stopping are steps of which one half is missing."""
 
+    def __init__(self, samples=129):
+        self.samples = samples
+
     def step(self, body, request):
         longest = LONGEST * body.leg_length
         if max(request.length, request.previous_length) > longest:
@@ -30,7 +33,7 @@ class CompassWalk:
                 available=longest,
                 why="the compass does not open wider",
             )
-        phase = np.linspace(0.0, 1.0, 33)
+        phase = np.linspace(0.0, 1.0, self.samples)
         x = 0.5 * (phase * request.length - (1.0 - phase) * request.previous_length)
         leg, foot = STRAIGHTNESS * body.leg_length, body.foot
         height = foot.ankle_height + np.sqrt(leg**2 - x**2)

@@ -20,7 +20,7 @@ BARS = {
     "float_mm": (1.0, "most"),
     "bone_error_mm": (1e-6, "most"),
     "stance_knee_deg": (3.0, "least"),
-    "knee_backward_mm": (0.0, "most"),
+    "knee_backward_mm": (1e-6, "most"),
     "joint_deg_per_60th": (20.0, "most"),
     "quaternion_flips": (0, "most"),
     "quaternion_norm_error": (1e-9, "most"),
@@ -38,7 +38,10 @@ BARS = {
 def posed(motion):
     """World positions (F, J, 3), world rotations per joint, sole points (F, 2, 3, 3)."""
     skeleton = motion.skeleton
-    offsets, tips = np.array(skeleton.offsets), np.array(skeleton.soles)  # SciPy takes no read-only ones
+    offsets, tips = (
+        np.array(skeleton.offsets),
+        np.array(skeleton.soles),
+    )  # SciPy takes no read-only ones
     quaternions = np.array(motion.rotations)
     positions = np.empty((len(motion), len(skeleton), 3))
     world = []
@@ -66,9 +69,7 @@ def runs(flags):
 def seen_footsteps(motion, positions, soles):
     """Per footstep: N and heading in every frame in which heel and ball bear, or None."""
     labels, out = motion.labels, []
-    for i, (side, when) in enumerate(
-        zip(labels.footstep_side, labels.footstep_time, strict=True)
-    ):
+    for i, (side, when) in enumerate(zip(labels.footstep_side, labels.footstep_time, strict=True)):
         again = np.flatnonzero(labels.footstep_side[i + 1 :] == side)
         until = labels.footstep_time[i + 1 + again[0]] if again.size else np.inf
         times = np.arange(len(motion)) / motion.fps

@@ -54,7 +54,9 @@ def legs(poses, body):
         soles[:, side, HEEL] = ankle + turn(world, [0.0, low, -foot.heel])
         soles[:, side, BALL] = ankle + turn(world, [0.0, low, foot.ball])
         joint = ankle + turn(world, [0.0, low + foot.toe_joint_height, foot.ball])
-        bent = Rotation.from_quat(np.array(world)) * Rotation.from_euler("x", -poses.bend[:, side])
+        bent = Rotation.from_quat(np.array(world)) * Rotation.from_euler(
+            "x", -poses.bend[:, [side]]
+        )
         soles[:, side, TOE] = joint + bent.apply([0.0, -foot.toe_joint_height, foot.toes])
     return ankles, soles
 

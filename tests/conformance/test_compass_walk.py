@@ -7,17 +7,11 @@ from __future__ import annotations
 
 import pytest
 from compass_walk import CompassWalk
-from judge import broken, judge
+from judge import broken
 from people import ENDS, GROUND, person, prepared, straight_plan
 from straight_walk import StraightWalkContract
 
 from gaitsmith.synthesis.sample import sample_walk
-
-#: The compass proposes feet that never roll, so its rear heel is raised by the contact stage
-#: alone, on the compass' own coarse grid: between two samples the knee gets a little
-#: straighter than the 3 degrees that hold for the measured walk.
-COMPASS_KNEE_DEG = 2.0
-
 
 class TestCompassWalk(StraightWalkContract):
     @pytest.fixture
@@ -25,14 +19,24 @@ class TestCompassWalk(StraightWalkContract):
         return CompassWalk()
 
 
+def walked(who, ratio, start, stop, **samples):
+    body = person(who)
+    plan = straight_plan(body, ratio=ratio, cadence=100.0, start=start, stop=stop)
+    walk = prepared(body, plan, CompassWalk(**samples))
+    return sample_walk(walk, body, GROUND, fps=120.0, recipe={})
+
+
 @pytest.mark.parametrize("who", [1.2, 1.75, 2.1, "kb92b-figure"])
 @pytest.mark.parametrize("ratio", [0.3, 0.6, 0.9])
 @pytest.mark.parametrize("start", ENDS)
 @pytest.mark.parametrize("stop", ENDS)
-def test_a_compass_walks(who, ratio, start, stop):
-    body = person(who)
-    plan = straight_plan(body, ratio=ratio, cadence=100.0, start=start, stop=stop)
-    walk = prepared(body, plan, CompassWalk())
-    motion = sample_walk(walk, body, GROUND, fps=120.0, recipe={})
-    assert broken(motion, but=["stance_knee_deg"]) == {}
-    assert judge(motion)["stance_knee_deg"] > COMPASS_KNEE_DEG
+def test_a_compass_walks_and_keeps_every_promise(who, ratio, start, stop):
+    assert broken(walked(who, ratio, start, stop)) == {}
+
+
+@pytest.mark.xfail(
+    reason="the rear heel is raised at the walk's own samples only: between coarse ones the leg "
+    "gets straight and the foot slips by up to 1 mm"
+)
+def test_the_promises_do_not_hang_on_how_finely_a_walk_is_sampled():
+    assert broken(walked(1.75, 0.9, "walk", "walk", samples=33)) == {}

@@ -62,7 +62,9 @@ def test_stance_ankles_stand_a_step_length_apart(body, shares):
 @given(body=bodies(), shares=lengths)
 def test_heel_then_ball_then_toe_tip_stay_where_they_are(body, shares):
     foot = body.foot
-    for request, step in chain(KinematicWalk([PROTOTYPE]), body, [r * body.leg_length for r in shares]):
+    for request, step in chain(
+        KinematicWalk([PROTOTYPE]), body, [r * body.leg_length for r in shares]
+    ):
         phase, sole, _, _ = stance(foot, step)
         heel, ball = phase <= step.flat, (phase >= step.flat) & (phase <= step.meta_off)
         tip = phase >= step.flat
@@ -94,7 +96,9 @@ def test_no_part_of_a_bearing_sole_is_below_the_floor(body, shares):
 
 @given(body=bodies(), shares=lengths)
 def test_the_ankles_of_bearing_feet_are_what_roll_gives(body, shares):
-    for request, step in chain(KinematicWalk([PROTOTYPE]), body, [r * body.leg_length for r in shares]):
+    for request, step in chain(
+        KinematicWalk([PROTOTYPE]), body, [r * body.leg_length for r in shares]
+    ):
         rolled = roll(body.foot, step.pitch, step.meta).ankle
         np.testing.assert_allclose(step.ankle[:, 0], rolled[:, 0], **EXACT)
         rear = step.phase <= step.toe_off

@@ -70,9 +70,7 @@ def test_the_angles_of_the_measured_step_are_the_measured_angles(walk, body, rat
     signs = np.array([-1.0, 1.0, 1.0, 1.0])
     expected = np.array(measured) + signs * c.gains * np.array(ratio - c.ratio)
     expected[0] = min(expected[0], np.pi)
-    np.testing.assert_allclose(
-        mu(c, body, ratio * body.leg_length), expected, rtol=0, atol=1e-12
-    )
+    np.testing.assert_allclose(mu(c, body, ratio * body.leg_length), expected, rtol=0, atol=1e-12)
 
 
 @given(walk=walks(), body=bodies(), ratio=ratios, scale=scales)

@@ -88,7 +88,7 @@ def _has_hip_height(body, ratio: float) -> bool:
 
 
 def test_a_walk_refuses_a_step_too_long_and_the_limit_it_names_works():
-    body = gaitsmith.body_from_height(1.75)
+    body = BODIES["adult"]
     with pytest.raises(InfeasibleStepError, match="too long") as caught:
         gaitsmith.walk(distance=4.0, body=body, step_length=1.3 * body.leg_length, cadence=70.0)
     limit = caught.value.available
@@ -148,10 +148,9 @@ def test_no_walk_data_hold_what_is_not_a_number(value, at):
         TimedSequence(broken, samples)
 
 
-@pytest.mark.parametrize("height", [float("nan"), float("inf")])
-def test_a_hip_height_that_is_none_does_not_get_through(height):
+def test_a_hip_height_that_is_none_does_not_get_through():
     with pytest.raises(InvalidInputError, match="finite"):
-        WALK.step(BODIES["adult"], request(0.7, 0.7, "walk", height))
+        WALK.step(BODIES["adult"], request(0.7, 0.7, "walk", float("nan")))
 
 
 @pytest.mark.parametrize(
@@ -172,5 +171,5 @@ def test_a_character_says_what_is_wrong_with_it(name, bad, said):
 
 
 def test_walk_data_whose_sequences_do_not_cover_the_step_are_refused():
-    with pytest.raises(InvalidInputError, match=r"foot3 must run from 0\.2000 to 1\.0000"):
-        PROTOTYPE.with_(toe_off=0.2, foot2=PROTOTYPE.foot2.with_values(PROTOTYPE.foot2.values))
+    with pytest.raises(InvalidInputError, match=r"foot2 must run from 0\.1778 to 1\.2000"):
+        PROTOTYPE.with_(toe_off=0.2)

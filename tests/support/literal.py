@@ -56,18 +56,14 @@ def toe_off_ankle(body: Body, sb: float, pitch: float, meta: float) -> complex:
 def hip_at_heel_strike(c: Character, body: Body, sl: float) -> complex:
     """Eqs. 7, 10, 11 with the measured kappa, from N of the stance foot."""
     a1_squared = (
-        body.thigh**2
-        + body.shin**2
-        - 2.0 * body.thigh * body.shin * math.cos(mu1(c, body, sl))
+        body.thigh**2 + body.shin**2 - 2.0 * body.thigh * body.shin * math.cos(mu1(c, body, sl))
     )
     ankle = heel_strike_ankle(body, sl, mu2(c, body, sl))
     x = (1.0 - c.kappa) * sl
     return x + 1j * (ankle.imag + math.sqrt(a1_squared - (ankle.real - x) ** 2))
 
 
-def tau(
-    walk: WalkData, body: Body, sb: float, sl: float, y1: float | None = None
-) -> Sequences:
+def tau(walk: WalkData, body: Body, sb: float, sl: float, y1: float | None = None) -> Sequences:
     """Every sample of the six sequences of ``body`` stepping ``sl`` after ``sb``."""
     c = walk.character
     alpha = (body.thigh + body.shin) / (walk.body.thigh + walk.body.shin)

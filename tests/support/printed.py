@@ -67,10 +67,7 @@ def toe_off_ankle(foot: Foot, pitch: float, meta: float) -> Float[np.ndarray, "2
     """D5, lemma 1, Eqs. 32, 33: without theta_b and without the previous step."""
     return np.array(
         [
-            foot.ball
-            + foot.toes
-            - foot.toes * np.cos(meta)
-            - foot.ankle_ball * np.cos(pitch),
+            foot.ball + foot.toes - foot.toes * np.cos(meta) - foot.ankle_ball * np.cos(pitch),
             foot.toes * np.sin(meta) + foot.ankle_ball * np.sin(pitch),
         ]
     )

@@ -52,7 +52,9 @@ def bodies(draw: st.DrawFn) -> Body:
         ball=draw(stretch) * body.foot.ball,
         toes=draw(stretch) * body.foot.toes,
     )
-    return replace(body, thigh=draw(stretch) * body.thigh, shin=draw(stretch) * body.shin, foot=foot)
+    return replace(
+        body, thigh=draw(stretch) * body.thigh, shin=draw(stretch) * body.shin, foot=foot
+    )
 
 
 @st.composite

@@ -67,13 +67,13 @@ def test_the_page_sorts_by_place_and_keeps_papers_apart(package):
     ours, rest = text.split("## KB92b")[1].split("## KB92a")
     rows = [line for line in ours.splitlines() if line.startswith("| ")][1:]
     assert rows == [
-        "| Eq. 5, 6, 21 | `gaitsmith.walks.model.Walk.step` |",
-        "| Eq. 10-12 | `gaitsmith.walks.model.late` |",
-        "| Section 2.3 | `gaitsmith.walks.model.Walk` |",
-        "| Theorem 1 | `gaitsmith.walks.model.Walk` |",
+        "| Eq. 5, 6, 21 | `gaitsmith.walk.model.Walk.step` |",
+        "| Eq. 10-12 | `gaitsmith.walk.model.late` |",
+        "| Section 2.3 | `gaitsmith.walk.model.Walk` |",
+        "| Theorem 1 | `gaitsmith.walk.model.Walk` |",
     ]
-    assert "Also cited by `gaitsmith.walks.model`." in ours
-    assert "| Figure 13 | `gaitsmith.walks.model.Walk.step` |" in rest
+    assert "Also cited by `gaitsmith.walk.model`." in ours
+    assert "| Figure 13 | `gaitsmith.walk.model.Walk.step` |" in rest
     assert "Also cited by `gaitsmith.walk`." in rest
     assert rest.count("No code cites it yet.") == 2
 

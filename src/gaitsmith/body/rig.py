@@ -108,11 +108,17 @@ def skeleton_of(body: Body) -> Skeleton:
             (f"{side}Toes", f"{side}Foot", (0.0, -toe_drop, body.foot.ball)),
         ]
     names = [name for name, _, _ in joints]
+    ends = np.zeros((len(names), 3))
+    ends[names.index("head"), 1] = body.head
+    for side, sign in zip(SIDES, SIDE_SIGN.tolist(), strict=True):
+        ends[names.index(f"{side}Hand"), 0] = sign * body.hand
+        ends[names.index(f"{side}Toes")] = [0.0, -body.foot.toe_joint_height, body.foot.toes]
     return Skeleton(
         names=tuple(names),
         parents=tuple(-1 if p is None else names.index(p) for _, p, _ in joints),
         offsets=np.array([offset for _, _, offset in joints]),
         soles=soles_of(body.foot),
+        ends=ends,
     )
 
 

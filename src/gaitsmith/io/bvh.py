@@ -187,6 +187,8 @@ def _vector(meters: Float[np.ndarray, "3"]) -> str:
 
 def _tip(skeleton: Skeleton, joint: int) -> Float[np.ndarray, "3"]:
     """End Site of a joint without children, meters in its frame; never shorter than 1 cm."""
+    if skeleton.ends is not None and np.linalg.norm(skeleton.ends[joint]) >= _SHORTEST_TIP:
+        return skeleton.ends[joint]
     name, bone = skeleton.names[joint], skeleton.offsets[joint]
     tip = _TIP_OVER_BONE * bone
     if name == "head":

@@ -24,12 +24,13 @@ meters, seconds, radians; float64 but for the integers and flags):
 ``recipe``                          JSON that regenerates the motion
 ``path``            (P, 2)          x, z of the path, where there was one
 ``sole_offsets``    (2, 3, 3)       sole points in the frames of the Foot and Toes joints
+``joint_ends``      (J, 3)          where bones without a child end, if that is known
 ``translations``    (F, J, 3)       joint minus parent, where a motion stretches its bones
 =================== =============== ==========================================================
 
 ``positions`` and ``soles`` follow from the other arrays; they are there so that a reader
-needs no kinematics. ``sole_offsets`` and ``translations`` are what it takes beyond them to
-get the same :class:`~gaitsmith.motion.motion.Motion` back, to the last bit.
+needs no kinematics. ``sole_offsets``, ``joint_ends`` and ``translations`` are what it takes
+beyond them to get the same :class:`~gaitsmith.motion.motion.Motion` back, to the last bit.
 """
 
 from __future__ import annotations
@@ -74,9 +75,10 @@ _KEYS: dict[str, tuple[tuple[str | int, ...], str]] = {
     "recipe": ((), "U"),
     "path": (("P", 2), "f"),
     "sole_offsets": ((2, 3, 3), "f"),
+    "joint_ends": (("J", 3), "f"),
     "translations": (("F", "J", 3), "f"),
 }
-_OPTIONAL = ("path", "translations")
+_OPTIONAL = ("path", "joint_ends", "translations")
 #: Fixed byte order, so that the same motion is the same bytes on every machine.
 _DTYPES = {"f": "<f8", "i": "<i8", "b": "|b1"}
 _KINDS = {"f": "float64", "i": "integers", "b": "flags (bool)", "U": "text"}
@@ -168,6 +170,7 @@ def _arrays(motion: Motion) -> dict[str, Shaped[np.ndarray, "..."]]:
         "recipe": labels.recipe,
         "path": labels.path,
         "sole_offsets": skeleton.soles,
+        "joint_ends": skeleton.ends,
         "translations": motion.translations,
     }
     arrays: dict[str, Shaped[np.ndarray, "..."]] = {}
@@ -271,6 +274,7 @@ def _motion(arrays: dict[str, Shaped[np.ndarray, "..."]]) -> Motion:
         parents=tuple(arrays["parents"].tolist()),
         offsets=arrays["offsets"],
         soles=arrays["sole_offsets"],
+        ends=arrays.get("joint_ends"),
     )
     labels = Labels(
         phase=arrays["phase"],

@@ -61,12 +61,16 @@ class Skeleton:
         ``(2, 3, 3)`` [left, right] x [heel, ball, toe tip], meters: heel and ball in the
         frame of the Foot joint, toe tip in that of the Toes joint (of the Foot, where a
         figure has no toes). None if unknown.
+    ends
+        ``(J, 3)`` where the bone of a joint without children ends, in its frame, meters: the
+        crown of the head, finger tips, toe tips. Zero for other joints; None if unknown.
     """
 
     names: tuple[str, ...]
     parents: tuple[int, ...]
     offsets: Float[np.ndarray, "joints 3"]
     soles: Float[np.ndarray, "2 3 3"] | None = None
+    ends: Float[np.ndarray, "joints 3"] | None = None
 
     def __post_init__(self) -> None:
         """Copy, check and freeze."""
@@ -89,6 +93,8 @@ class Skeleton:
         object.__setattr__(self, "offsets", frozen_array("offsets", self.offsets, (count, 3)))
         if self.soles is not None:
             object.__setattr__(self, "soles", frozen_array("soles", self.soles, (2, 3, 3)))
+        if self.ends is not None:
+            object.__setattr__(self, "ends", frozen_array("ends", self.ends, (count, 3)))
 
     def __len__(self) -> int:
         """Number of joints."""

@@ -94,9 +94,19 @@ class Maker:
         ]
         return float(min(heels)) if heels else float(self.rest[:, 1].min())
 
+    @property
+    def crown(self) -> float | None:
+        """Height of the crown over the head joint, if the skeleton tells it, meters."""
+        head, ends = self.find("head"), self.skeleton.ends
+        if head is None or ends is None or ends[head, 1] <= 0.0:
+            return None
+        return float(ends[head, 1])
+
     def _stature(self) -> float:
         head, neck, hips = (self.find(name) for name in ("head", "neck", "hips"))
         for joint, share in ((head, HEAD_JOINT), (neck, 0.845), (hips, 0.53)):
+            if joint is not None and joint == head and self.crown is not None:
+                return float(self.rest[joint, 1] - self.floor) + self.crown
             if joint is not None and self.rest[joint, 1] > self.floor:
                 return float(self.rest[joint, 1] - self.floor) / share
         return max(float(np.ptp(self.rest[:, 1])), 0.5)

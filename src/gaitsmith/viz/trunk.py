@@ -173,7 +173,8 @@ def add_head(maker: Maker) -> None:
         maker.add("neck", neck, mesh, wood)
     if head is None:
         return
-    chin, crown = -0.046 * maker.stature, (1.0 - HEAD_JOINT) * maker.stature
+    crown = maker.crown or (1.0 - HEAD_JOINT) * maker.stature
+    chin = -0.51 * crown
     tall = crown - chin
     # share of the height, half-depth, half-width, forward shift, on a head 0.23 m tall
     egg = np.array(

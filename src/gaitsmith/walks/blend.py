@@ -14,18 +14,27 @@ from gaitsmith.walks.generalize import generalize, mu
 if TYPE_CHECKING:
     from jaxtyping import Float
 
+    from gaitsmith.body.body import Body
+    from gaitsmith.walks.data import Character
+
 #: Samples per interval between events on which two sequences meet.
 SAMPLES = 40
 
 
 def blend(
-    first: WalkData, second: WalkData, share: float, *, start_height: float | None = None
+    first: WalkData,
+    second: WalkData,
+    share: float,
+    *,
+    start_height: float | None = None,
+    before: Character | None = None,
 ) -> WalkData:
     """Walk data ``share`` of the way from ``first`` to ``second``, events and all.
 
     Both must be of the same body and step lengths (generalize them first). Curves meet at
     equal shares of the interval between their events, so that a heel strike is never mixed
-    with a swing; the ends are then made to agree with the blended angles.
+    with a swing; the ends are then made to agree with the blended angles, those that the step
+    begins with by the character ``before`` (see :func:`generalize`).
     """
     a, b = 1.0 - share, share
     events = {
@@ -43,25 +52,8 @@ def blend(
         values = [getattr(w, name).at(g) for w, g in zip((first, second), grids, strict=True)]
         return TimedSequence(a * grids[0] + b * grids[1], a * values[0] + b * values[1])
 
-    body, length = first.body, first.length
-    angles = [
-        a * x + b * y
-        for x, y in zip(
-            mu(first.character, body, length), mu(second.character, body, length), strict=True
-        )
-    ]
-    character = replace(
-        first.character,
-        ratio=length / body.leg_length,
-        knee=angles[0],
-        strike_pitch=angles[1],
-        off_pitch=angles[2],
-        off_meta=angles[3],
-        kappa=a * first.character.kappa + b * second.character.kappa,
-        gains=tuple(
-            a * x + b * y
-            for x, y in zip(first.character.gains, second.character.gains, strict=True)
-        ),
+    character = blended_character(
+        first.character, second.character, share, first.body, first.length
     )
     mix = replace(
         first,
@@ -69,7 +61,37 @@ def blend(
         **events,
         **{name: mixed(name) for name in first.sequences},
     )
-    return generalize(mix, body, first.previous_length, length, start_height=start_height)
+    return generalize(
+        mix,
+        first.body,
+        first.previous_length,
+        first.length,
+        start_height=start_height,
+        before=before,
+    )
+
+
+def blended_character(
+    first: Character, second: Character, share: float, body: Body, length: float
+) -> Character:
+    """Character ``share`` of the way, whose measured step is ``body``'s of ``length`` meters."""
+    a, b = 1.0 - share, share
+    knee, strike, off, meta = (
+        a * x + b * y
+        for x, y in zip(mu(first, body, length), mu(second, body, length), strict=True)
+    )
+    return replace(
+        first,
+        ratio=length / body.leg_length,
+        knee=knee,
+        strike_pitch=strike,
+        off_pitch=off,
+        off_meta=meta,
+        kappa=a * first.kappa + b * second.kappa,
+        gains=tuple(a * x + b * y for x, y in zip(first.gains, second.gains, strict=True)),
+        bounce_power=a * first.bounce_power + b * second.bounce_power,
+        swing_power=a * first.swing_power + b * second.swing_power,
+    )
 
 
 def _spread(marks: Float[np.ndarray, "k"]) -> Float[np.ndarray, "n"]:

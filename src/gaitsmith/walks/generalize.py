@@ -138,6 +138,7 @@ def generalize(
     length: float,
     *,
     start_height: float | None = None,
+    before: Character | None = None,
 ) -> WalkData:
     """Walk data of ``body`` stepping ``length`` after ``previous_length``: the paper's tau.
 
@@ -152,6 +153,9 @@ def generalize(
     start_height
         Hip height at which the step begins, meters: "given by the current posture" (Eq. 14).
         None: what a step of ``previous_length`` ends with.
+    before
+        Character of the step before, which gives the ends that this step begins with. None:
+        the same. It differs where walk data are blended from several measured steps.
 
     Notes
     -----
@@ -159,22 +163,22 @@ def generalize(
     bounce of the hips is scaled by the stride length to ``character.bounce_power`` and the
     swing's rise to ``character.swing_power``; both powers 0 give the paper's rule.
     """
-    c = walk.character
+    c, earlier = walk.character, before or walk.character
     for name, value in (("previous_length", previous_length), ("length", length)):
         if not (np.isfinite(value) and value > 0.0):
             raise InvalidInputError(f"{name} must be a positive number of meters, got {value!r}")
     alpha = body.leg_length / walk.body.leg_length
     stride = (previous_length + length) / (alpha * (walk.previous_length + walk.length))
     bounce, swing = stride**c.bounce_power, stride**c.swing_power
-    _, strike_before, off_before, meta_before = mu(c, body, previous_length)
+    _, strike_before, off_before, meta_before = mu(earlier, body, previous_length)
     _, strike, off, meta = mu(c, body, length)
-    low = hip_height(c, body, previous_length) if start_height is None else start_height
+    low = hip_height(earlier, body, previous_length) if start_height is None else start_height
     high = hip_height(c, body, length)
 
     hip, ankle = walk.hip.values, walk.ankle.values
     start = ankle_at_toe_off(body.foot, previous_length, off_before, meta_before)
     end = ankle_at_heel_strike(body.foot, length, strike)
-    hip_forward = affine(hip[:, 0], -c.kappa * previous_length, (1.0 - c.kappa) * length)
+    hip_forward = affine(hip[:, 0], -earlier.kappa * previous_length, (1.0 - c.kappa) * length)
     hip_up = arc(walk.hip.unit, alpha * hip[:, 1], low, high, bounce)
     ankle_forward = affine(ankle[:, 0], start[0], end[0])
     ankle_up = arc(walk.ankle.unit, alpha * ankle[:, 1], start[1], end[1], swing)

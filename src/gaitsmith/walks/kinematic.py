@@ -11,12 +11,11 @@ import numpy as np
 from gaitsmith.body.sole import rolled_ankle
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
-from gaitsmith.walks.blend import blend
+from gaitsmith.walks.blend import blend, blended_character
 from gaitsmith.walks.data import TimedSequence, WalkData
 from gaitsmith.walks.generalize import (
     affine,
     ankle_at_heel_strike,
-    ankle_at_toe_off,
     arc,
     check_step_length,
     generalize,
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
+    from gaitsmith.walks.data import Character
 
 #: Straightness of the legs in standing: hip to ankle over leg length (7 degrees of flexion).
 STANDING_REACH = 0.9982
@@ -80,17 +80,48 @@ class KinematicWalk:
 
         Sampled on :func:`phase_grid` of its events.
         """
+        around, share = self._around(body, length)
+        before = self._character(body, previous_length)
+        walks = [
+            generalize(w, body, previous_length, length, start_height=start_height, before=before)
+            for w in around
+        ]
+        if len(walks) == 1:
+            return walks[0]
+        return densified(blend(*walks, share, start_height=start_height, before=before))
+
+    def _around(self, body: Body, length: float) -> tuple[tuple[WalkData, ...], float]:
+        """The one or two measured steps nearest to ``length``, and the share of the second."""
         ratio = length / body.leg_length
         ratios = [w.character.ratio for w in self._prototypes]
         right = int(np.searchsorted(ratios, ratio))
         around = self._dense[max(right - 1, 0) : right + 1]
-        walks = [
-            generalize(w, body, previous_length, length, start_height=start_height) for w in around
-        ]
-        if len(walks) == 1:
-            return walks[0]
-        share = (ratio - ratios[right - 1]) / (ratios[right] - ratios[right - 1])
-        return densified(blend(walks[0], walks[1], share, start_height=start_height))
+        if len(around) == 1:
+            return around, 0.0
+        return around, (ratio - ratios[right - 1]) / (ratios[right] - ratios[right - 1])
+
+    def _character(self, body: Body, length: float) -> Character:
+        """Of a step of ``length``: it must not depend on the steps beside it."""
+        around, share = self._around(body, length)
+        if len(around) == 1:
+            return around[0].character
+        one, two = (w.character for w in around)
+        return blended_character(one, two, share, body, length)
+
+    def _rear(self, walk: WalkData) -> tuple[Float[np.ndarray, "R"], Float[np.ndarray, "R"]]:
+        """Pitch and meta of the rear foot on the grid of [0, TOM]: F2 and M of the step before.
+
+        That step had its own length, so its sequences end at mu3 and mu4 of it ([KB92b] uses
+        the current length: erratum D6), and, between measured steps, its own curves. Its
+        toe-off is moved to that of ``walk``.
+        """
+        phase = walk.hip.times[walk.hip.times <= walk.toe_off]
+        length = walk.previous_length
+        if len(self._prototypes) == 1:
+            return _late(walk, len(phase), mu(walk.character, walk.body, length))
+        before = self.walk_data(walk.body, length, length)
+        at = 1.0 + phase * (before.toe_off / walk.toe_off)
+        return before.foot2.at(at)[:, 0], before.meta.at(at)[:, 0]
 
     def _step(self, body: Body, request: StepRequest) -> SagittalStep:
         for length in (request.previous_length, request.length):
@@ -101,7 +132,7 @@ class KinematicWalk:
             return self._stop(body, request)
         previous = request.previous_length
         walk = self.walk_data(body, previous, request.length, request.hip_height)
-        return _sagittal(walk, *_rear(walk, previous), previous=previous)
+        return _sagittal(walk, *self._rear(walk), previous=previous)
 
     def _start(self, body: Body, request: StepRequest) -> SagittalStep:
         """From standing: the first foot leaves as in a walk with somewhat shorter steps."""
@@ -109,19 +140,16 @@ class KinematicWalk:
         before = START_SHARE * length
         stand = standing_height(body) if request.hip_height is None else request.hip_height
         walk = self.walk_data(body, before, length, stand)
-        kappa = walk.character.kappa
-        _, _, off, meta = mu(walk.character, body, before)
         hip, ankle = np.array(walk.hip.values), np.array(walk.ankle.values)
         bounce, swing = _of_half_a_stride(walk)
-        hip[:, 0] = affine(hip[:, 0], 0.0, (1.0 - kappa) * length)
+        hip[:, 0] = affine(hip[:, 0], 0.0, hip[-1, 0])
         hip[:, 1] = arc(walk.hip.unit, hip[:, 1], hip[0, 1], hip[-1, 1], bounce)
-        left = ankle_at_toe_off(body.foot, 0.0, off, meta)
-        ankle[:, 0] = affine(ankle[:, 0], left[0], ankle[-1, 0])
-        ankle[:, 1] = arc(walk.ankle.unit, ankle[:, 1], left[1], ankle[-1, 1], swing)
+        ankle[:, 0] = affine(ankle[:, 0], ankle[0, 0] + before, ankle[-1, 0])
+        ankle[:, 1] = arc(walk.ankle.unit, ankle[:, 1], ankle[0, 1], ankle[-1, 1], swing)
         turn = walk.foot3.values[:, 0]
         turn = arc(walk.foot3.unit, turn, turn[0], turn[-1], swing)
         # the foot stands flat at first: take the part it would already have turned away
-        pitch, toes = _rear(walk, before)
+        pitch, toes = self._rear(walk)
         fade = 1.0 - smoothstep(np.linspace(0.0, 1.0, len(pitch)))
         walk = walk.with_(
             hip=walk.hip.with_values(hip),
@@ -141,18 +169,16 @@ class KinematicWalk:
         """To standing: the rear foot closes beside the other, which stays flat."""
         previous = request.previous_length
         walk = self.walk_data(body, previous, START_SHARE * previous, request.hip_height)
-        _, _, off, meta = mu(walk.character, body, previous)
-        kappa = walk.character.kappa
         hip, ankle = np.array(walk.hip.values), np.array(walk.ankle.values)
-        hip[:, 0] = affine(hip[:, 0], -kappa * previous, 0.0)
+        hip[:, 0] = affine(hip[:, 0], hip[0, 0], 0.0)
         bounce, swing = _of_half_a_stride(walk)
         hip[:, 1] = arc(walk.hip.unit, hip[:, 1], hip[0, 1], standing_height(body), bounce)
-        start = ankle_at_toe_off(body.foot, previous, off, meta)
         end = ankle_at_heel_strike(body.foot, 0.0, 0.0)
-        ankle[:, 0] = affine(ankle[:, 0], start[0], end[0])
-        ankle[:, 1] = arc(walk.ankle.unit, ankle[:, 1], start[1], end[1], swing)
-        turn = arc(walk.foot3.unit, walk.foot3.values[:, 0], -off, 0.0, swing)
-        rear = _rear(walk, previous)
+        ankle[:, 0] = affine(ankle[:, 0], ankle[0, 0], end[0])
+        ankle[:, 1] = arc(walk.ankle.unit, ankle[:, 1], ankle[0, 1], end[1], swing)
+        turn = walk.foot3.values[:, 0]
+        turn = arc(walk.foot3.unit, turn, turn[0], 0.0, swing)
+        rear = self._rear(walk)
         walk = walk.with_(
             hip=walk.hip.with_values(hip),
             ankle=walk.ankle.with_values(ankle),
@@ -206,16 +232,11 @@ def densified(walk: WalkData) -> WalkData:
     )
 
 
-def _rear(
-    walk: WalkData, previous_length: float
+def _late(
+    walk: WalkData, count: int, angles: tuple[float, float, float, float]
 ) -> tuple[Float[np.ndarray, "R"], Float[np.ndarray, "R"]]:
-    """Pitch and meta of the rear foot on the grid of [0, TOM]: F2 and M of the step before.
-
-    That step had length ``previous_length``, so its sequences end at mu3 and mu4 of it
-    ([KB92b] uses the current length: erratum D6).
-    """
-    _, _, off, meta = mu(walk.character, walk.body, previous_length)
-    count = int((walk.hip.times <= walk.toe_off).sum())
+    """F2 and M at the last ``count`` samples, carried to end at mu3 and mu4 of ``angles``."""
+    _, _, off, meta = angles
     pitch = walk.foot2.values[-count:, 0] * (-off / walk.foot2.values[-1, 0])
     toes = np.zeros(count)
     late = walk.meta.values[-count:, 0]
