@@ -134,7 +134,7 @@ def test_d4_the_whole_bounce_at_small_steps_is_out_of_reach(ratio, literal, ours
 def test_d4_at_the_measured_step_there_is_nothing_to_scale():
     kept = generalize(printed.bounce_kept(PROTOTYPE), S, SL, SL)
     assert_walks_equal(kept, generalize(PROTOTYPE, S, SL, SL))
-    assert out_of_reach(kept) < 1e-3
+    assert out_of_reach(kept) < 4e-3  # the markers' legs are 4 mm too long for the body's
 
 
 # --- D5: lemma 1, Eqs. 32, 33 ----------------------------------------------------------------
@@ -177,7 +177,7 @@ def test_d6_a_toe_off_by_the_current_length_jumps_between_unequal_steps(name, be
     assert turned == pytest.approx(C.gains[2] * abs(now - before), abs=EXACT)
     assert turned > 0.09
     # 2 to 5.5 cm; the shorter the leg the less
-    assert np.linalg.norm(ankle - bears) > 0.06 * body.leg_length * abs(now - before) / 0.35
+    assert np.linalg.norm(ankle - bears) > 0.14 * body.leg_length * abs(now - before)
 
     np.testing.assert_allclose(leaves.ankle.values[0], bears, rtol=0, atol=EXACT)
     assert leaves.foot3.values[0, 0] == pytest.approx(was.foot2.values[-1, 0], abs=EXACT)
@@ -295,7 +295,8 @@ def test_d8_the_factor_sl_1_in_the_proof_is_one_too_many():
     scaled = change_body(walk, body)
     without = printed.hip_forward(scaled, length)
     np.testing.assert_allclose(literal, without * walk.length, rtol=0, atol=EXACT)
-    assert np.ptp(literal) < 0.75 * np.ptp(generalize(scaled, body, alpha * walk.length, length).hip.values[:, 0])
+    ours = generalize(scaled, body, alpha * walk.length, length).hip.values[:, 0]
+    assert np.ptp(literal) < 0.75 * np.ptp(ours)
 
 
 # --- D17: speeds -----------------------------------------------------------------------------
@@ -347,7 +348,7 @@ def test_d17_the_hips_change_their_speed_at_once_between_unequal_steps(name):
     steps = proposals(BODIES[name])
     jumps, speeds = hip_jumps(steps)
     relative = np.abs(jumps[:, 2]) / speeds[:, 2]
-    assert 0.07 < relative.min()
+    assert relative.min() > 0.07
     assert 0.18 < relative.max() < 0.28
     assert np.abs(jumps[:, 1]).max() > 0.03 * BODIES[name].leg_length
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import literal
 import numpy as np
@@ -13,7 +14,6 @@ from walkers import BODIES, PROTOTYPE, assert_walks_equal, bodies, ratios, walks
 
 from gaitsmith.body.body import Foot
 from gaitsmith.body.presets import KB92B_FIGURE, KB92B_SUBJECT
-from gaitsmith.walks.data import WalkData
 from gaitsmith.walks.generalize import (
     ankle_at_heel_strike,
     ankle_at_toe_off,
@@ -23,6 +23,9 @@ from gaitsmith.walks.generalize import (
     mu,
     scale_step_length,
 )
+
+if TYPE_CHECKING:
+    from gaitsmith.walks.data import WalkData
 
 #: Ratios of steps of one body that stay within those for which the laws are asserted.
 rho = st.floats(0.87, 1.15)

@@ -17,7 +17,6 @@ from gaitsmith.ground import GROUNDS
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.straight import Stance, footstep_positions
 from gaitsmith.walks import KinematicWalk, SagittalStep, StepRequest
-from gaitsmith.walks.data import Character, WalkData
 from gaitsmith.walks.files import built_in
 
 if TYPE_CHECKING:
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
     from gaitsmith.contact import Poses
+    from gaitsmith.walks.data import Character, WalkData
 
 PROTOTYPE = built_in("winter_step")
 

@@ -162,7 +162,7 @@ def _sway(p: Float[np.ndarray, "T"], kind: str, e0: float, e1: float) -> Float[n
 
     steady = np.sin(np.pi * (p - 0.06))
     if kind == "start":
-        shift = 1.35 * size(e1) * smoothstep(p / 0.30)
+        shift = 1.1 * size(e1) * smoothstep(p / 0.30)
         later = smoothstep((p - 0.30) / 0.60)
         return (1.0 - later) * shift + later * size(e1) * steady
     return (size(e0) + (size(e1) - size(e0)) * smoothstep(p)) * steady

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,8 +16,8 @@ if TYPE_CHECKING:
     from gaitsmith.body.body import Body
     from gaitsmith.walks.data import Character
 
-#: Samples per interval between events on which two sequences meet.
-SAMPLES = 40
+#: Samples of the two that are nearer than this, as a share of an interval, are one.
+SAME = 1e-9
 
 
 def blend(
@@ -48,7 +47,7 @@ def blend(
         return np.array([times[0], *inside, times[-1]])
 
     def mixed(name: str) -> TimedSequence:
-        grids = [_spread(marks(walk, name)) for walk in (first, second)]
+        grids = _common(*((getattr(w, name).times, marks(w, name)) for w in (first, second)))
         values = [getattr(w, name).at(g) for w, g in zip((first, second), grids, strict=True)]
         return TimedSequence(a * grids[0] + b * grids[1], a * values[0] + b * values[1])
 
@@ -94,6 +93,15 @@ def blended_character(
     )
 
 
-def _spread(marks: Float[np.ndarray, "k"]) -> Float[np.ndarray, "n"]:
-    pieces = [np.linspace(x, y, SAMPLES, endpoint=False) for x, y in pairwise(marks)]
-    return np.concatenate([*pieces, marks[-1:]])
+def _common(
+    *sampled: tuple[Float[np.ndarray, "n"], Float[np.ndarray, "k"]],
+) -> list[Float[np.ndarray, "m"]]:
+    """Times in either sequence that lie at equal shares of the intervals between its marks.
+
+    They hold every sample of both, so that all of one and none of the other is that one.
+    """
+    shares = np.sort(
+        np.concatenate([np.interp(t, marks, np.arange(len(marks))) for t, marks in sampled])
+    )
+    shares = shares[np.concatenate([[True], np.diff(shares) > SAME])]
+    return [np.interp(shares, np.arange(len(marks)), marks) for _, marks in sampled]

@@ -24,7 +24,7 @@ from gaitsmith.walks.generalize import (
 from gaitsmith.walks.model import SagittalStep, StepRequest
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from jaxtyping import Float
 
@@ -62,7 +62,7 @@ class KinematicWalk:
             raise InvalidInputError("a kinematic walk needs at least one measured step")
         self._prototypes = tuple(sorted(prototypes, key=lambda w: w.character.ratio))
         self._dense = tuple(densified(w) for w in self._prototypes)
-        self._cached = lru_cache(maxsize=512)(self._step)
+        self._cached: Callable[[Body, StepRequest], SagittalStep] = lru_cache(512)(self._step)
 
     @property
     def prototypes(self) -> tuple[WalkData, ...]:
