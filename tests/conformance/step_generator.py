@@ -6,6 +6,8 @@ Subclass :class:`StepGeneratorContract` in one test file per generator; ``genera
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from people import GROUND
@@ -95,7 +97,7 @@ class StepGeneratorContract:
             assert isinstance(step.end, WalkerState)
 
     def test_a_step_begins_where_the_one_before_ends(self, steps, body):
-        for (_, before), (_, after) in zip(steps, steps[1:], strict=False):
+        for (_, before), (_, after) in pairwise(steps):
             last, first = before.poses(np.array([1.0])), after.poses(np.array([0.0]))
             np.testing.assert_allclose(legs(last, body)[1], legs(first, body)[1], atol=1e-8)
             np.testing.assert_allclose(last.upper, first.upper, atol=1e-9)

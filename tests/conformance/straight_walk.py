@@ -6,6 +6,7 @@ Subclass :class:`StraightWalkContract` in one test file per walk; ``walk`` is a 
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -85,7 +86,7 @@ class StraightWalkContract:
 
     def test_steps_join_without_a_jump(self, chain):
         """HSM+ is the next step's HSM- with the legs exchanged."""
-        for (asked, step), (_, after) in zip(chain, chain[1:], strict=False):
+        for (asked, step), (_, after) in pairwise(chain):
             ahead = [asked.length, 0.0]
             np.testing.assert_allclose(step.center[-1] - ahead, after.center[0], atol=1e-9)
             for mine, its in ((STANCE, SWING), (SWING, STANCE)):

@@ -13,6 +13,7 @@ from straight_walk import StraightWalkContract
 
 from gaitsmith.synthesis.sample import sample_walk
 
+
 class TestCompassWalk(StraightWalkContract):
     @pytest.fixture
     def walk(self):
@@ -34,9 +35,5 @@ def test_a_compass_walks_and_keeps_every_promise(who, ratio, start, stop):
     assert broken(walked(who, ratio, start, stop)) == {}
 
 
-@pytest.mark.xfail(
-    reason="the rear heel is raised at the walk's own samples only: between coarse ones the leg "
-    "gets straight and the foot slips by up to 1 mm"
-)
 def test_the_promises_do_not_hang_on_how_finely_a_walk_is_sampled():
     assert broken(walked(1.75, 0.9, "walk", "walk", samples=33)) == {}

@@ -130,8 +130,7 @@ def test_whatever_is_asked_the_answer_is_finite_or_an_error_of_ours(
 ):
     try:
         step = WALK.step(body, request(before, now, kind, height))
-    except GaitsmithError as error:
-        assert str(error)
+    except GaitsmithError:
         return
     for name in ("phase", "center", "ankle", "pitch", "meta", "bend"):
         assert np.isfinite(getattr(step, name)).all(), name

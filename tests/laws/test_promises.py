@@ -11,7 +11,7 @@ from gaitsmith.body.presets import BODIES
 from gaitsmith.pipeline import walk
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(errand=errands())
 def test_every_walk_keeps_its_promises(errand):
     assert broken(walk(**errand.arguments)) == {}
@@ -45,7 +45,6 @@ def test_a_shuffle_is_a_walk_too(distance):
     assert broken(walk(distance=distance)) == {}
 
 
-@pytest.mark.xfail(reason="the foot that lands in the very last frame is not yet flagged")
 def test_a_heel_strike_in_the_last_frame_is_a_contact():
     """``stop="walk"`` ends with the heel on the ground."""
     motion = walk(distance=3.5, step_length=0.7, cadence=120, start="walk", stop="walk")

@@ -87,10 +87,6 @@ def test_the_hips_keep_their_speed(who, ratio, start, stop):
         np.testing.assert_allclose(before[1], after[1], atol=5e-3)
 
 
-@pytest.mark.xfail(
-    reason="pitch and meta are read monotonely, so the foot slows down on its toe tip at the very "
-    "end and leaves with up to 1.1 m/s more"
-)
 @pytest.mark.parametrize("name", BODIES)
 @pytest.mark.parametrize("ratio", [0.4, 0.9])
 def test_the_foot_leaves_with_the_speed_it_had(name, ratio):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import subprocess
 import sys
 
@@ -53,7 +54,9 @@ def test_two_processes_the_same_bytes(tmp_path):
         files = [str(place / f"w{suffix}") for suffix in SUFFIXES]
         outputs = [word for file in files for word in ("-o", file)]
         command = [sys.executable, "-m", "gaitsmith", "walk", "--distance", "3", *outputs]
-        subprocess.run(command, check=True, env={"PYTHONHASHSEED": seed}, capture_output=True)
+        subprocess.run(
+            command, check=True, env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True
+        )
         found.append([(place / f"w{suffix}").read_bytes() for suffix in SUFFIXES])
     assert found[0] == found[1]
 

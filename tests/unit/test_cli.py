@@ -235,9 +235,7 @@ WRONG = {
     "body name": walk("--body", "nobody", "-o", "a.npz"),
     "body height": walk("--body", 17, "-o", "a.npz"),
     "body nan": walk("--body", "nan", "-o", "a.npz"),
-    "contradiction": walk(
-        "--step-length", 0.7, "--cadence", 100, "--speed", 1.5, "-o", "a.npz"
-    ),
+    "contradiction": walk("--step-length", 0.7, "--cadence", 100, "--speed", 1.5, "-o", "a.npz"),
     "format": walk("-o", "a.xyz"),
     "no format": walk("-o", "walk"),
     "list nothing": ["list"],
@@ -347,6 +345,14 @@ def test_demo_writes_its_files(run, tmp_path, monkeypatch):
     assert made(tmp_path / "demo") == DEMO
     with np.load(tmp_path / "demo" / "walk.npz") as data:
         assert data["path"][-1].tolist() == [0.0, 5.0]
+
+
+def test_demo_into_a_file_is_refused(run, tmp_path):
+    (tmp_path / "taken").write_text("mine")
+    code, out, err = run("demo", "-o", "taken")
+    assert (code, out) == (1, "")
+    assert err == "gaitsmith: cannot write into taken: it is a file; -o takes a folder\n"
+    assert (tmp_path / "taken").read_text() == "mine"
 
 
 @pytest.mark.slow

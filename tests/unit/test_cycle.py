@@ -67,7 +67,9 @@ def test_exact_at_its_samples(count):
 @given(phase=st.floats(-3.0, 3.0), turns=st.integers(-5, 5))
 def test_period_one(phase, turns):
     stride = cycle()
-    for a, b in zip(stride.at(np.array([phase])), stride.at(np.array([phase + turns])), strict=True):
+    for a, b in zip(
+        stride.at(np.array([phase])), stride.at(np.array([phase + turns])), strict=True
+    ):
         np.testing.assert_allclose(a, b, atol=1e-9)
 
 

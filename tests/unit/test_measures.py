@@ -189,7 +189,10 @@ def test_the_gait_s_own_numbers():
 
 def test_step_lengths_do_not_count_width_and_toe_out():
     turned = 0.7  # the whole walk heads there
-    way, left = np.array([np.sin(turned), 0, np.cos(turned)]), np.array([np.cos(turned), 0, -np.sin(turned)])
+    way, left = (
+        np.array([np.sin(turned), 0, np.cos(turned)]),
+        np.array([np.cos(turned), 0, -np.sin(turned)]),
+    )
     sides = np.array([0, 1, 0, 1])
     sign = np.where(sides == 0, 1.0, -1.0)
     position = np.outer([0.0, 0.4, 1.0, 1.7], way) + 0.08 * np.outer(sign, left)
@@ -211,9 +214,7 @@ def walk_labels(ends, times):
 
 
 def test_steady_steps_neither_start_nor_stop_nor_fit_the_end():
-    made = walk_labels(
-        [0.0, 0.0, 0.5, 1.1, 1.7, 2.2, 2.2], [0.0, 0.0, 0.9, 1.5, 2.1, 2.7, 3.6]
-    )
+    made = walk_labels([0.0, 0.0, 0.5, 1.1, 1.7, 2.2, 2.2], [0.0, 0.0, 0.9, 1.5, 2.1, 2.7, 3.6])
     assert steady_steps(made).tolist() == [1, 2]
 
 

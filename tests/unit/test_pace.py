@@ -42,7 +42,9 @@ def test_three_may_disagree_by_a_percent(off):
 @pytest.mark.parametrize("off", [-0.0101, 0.0101, 0.5])
 def test_three_that_contradict_are_refused_with_their_numbers(off):
     speed = 0.7 * 100.0 / 60.0 / (1 + off)
-    with pytest.raises(InvalidInputError, match=r"0\.7 m at cadence 100/min is 1\.167 m/s.*any two"):
+    with pytest.raises(
+        InvalidInputError, match=r"0\.7 m at cadence 100/min is 1\.167 m/s.*any two"
+    ):
         choose_pace(ADULT, step_length=0.7, cadence=100.0, speed=speed)
 
 

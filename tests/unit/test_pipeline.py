@@ -124,7 +124,12 @@ def test_a_recipe_of_another_version_warns(motion):
     np.testing.assert_array_equal(again.rotations, motion.rotations)
 
 
-@pytest.mark.parametrize("suffix", WRITERS)
+SLOW = {".gif"}
+
+
+@pytest.mark.parametrize(
+    "suffix", [pytest.param(s, marks=[pytest.mark.slow] if s in SLOW else []) for s in WRITERS]
+)
 def test_every_format_is_written(suffix, motion, tmp_path):
     path = save(motion, tmp_path / f"a{suffix}")
     assert path.stat().st_size > 1000
@@ -137,7 +142,7 @@ def test_all_files_or_none(motion, tmp_path, monkeypatch):
         raise OSError(28, "No space left on device", str(path))
 
     monkeypatch.setitem(WRITERS, ".png", broken)
-    with pytest.raises(OSError, match="No space left on device: .*b.png"):
+    with pytest.raises(OSError, match=r"No space left on device: .*b\.png"):
         save_all(motion, [tmp_path / "a.npz", tmp_path / "b.png", tmp_path / "c.bvh"])
     assert list(tmp_path.iterdir()) == []
 

@@ -168,9 +168,7 @@ def test_standing_is_upright_and_still():
 def test_a_spine_of_any_number_of_joints(segments):
     """The head goes the same way, however finely the trunk is cut."""
     body = replace(BODY, spine_segments=segments)
-    motion = sample_walk(
-        prepared(body, straight_plan(body)), body, GROUND, fps=30.0, recipe={}
-    )
+    motion = sample_walk(prepared(body, straight_plan(body)), body, GROUND, fps=30.0, recipe={})
     whole = sample_walk(prepared(BODY, straight_plan(BODY)), BODY, GROUND, fps=30.0, recipe={})
     world = posed(motion)[1][motion.skeleton.index("head")]
     same = posed(whole)[1][whole.skeleton.index("head")]

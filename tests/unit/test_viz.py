@@ -12,9 +12,9 @@ from gaitsmith.geometry.rotations import about, multiply
 from gaitsmith.motion.kinematics import forward_kinematics
 from gaitsmith.motion.motion import Labels, Motion
 from gaitsmith.motion.skeleton import Skeleton
+from gaitsmith.skin.mannequin import build_mannequin
 from gaitsmith.viz import contact_sheet, gif
 from gaitsmith.viz.canvas import nice_step
-from gaitsmith.viz.mannequin import build_mannequin
 from gaitsmith.viz.render import camera, draw_figure, rasterize
 from gaitsmith.viz.tracks import flexion, smooth, stride_frames, tracks_of
 

@@ -153,9 +153,9 @@ def test_the_walk_is_continuous_in_the_step_length(name):
             other = two.sequences[name_]
             first = sequence.at(sequence.times[0] + np.ptp(sequence.times) * at)
             second = other.at(other.times[0] + np.ptp(other.times) * at)
-            # the phase grid may gain a sample: then what is read between samples moves,
-            # by some 0.03 mm or 0.01 deg
-            np.testing.assert_allclose(first, second, rtol=0, atol=3e-4, err_msg=name_)
+            # the phase grid may gain a sample: then what is read between samples moves a little
+            atol = 1e-4 if name_ in ("hip", "ankle") else 1e-3
+            np.testing.assert_allclose(first, second, rtol=0, atol=atol, err_msg=name_)
 
 
 @settings(max_examples=40)

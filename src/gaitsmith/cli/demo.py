@@ -21,6 +21,8 @@ def demo(
     from gaitsmith import pipeline
     from gaitsmith.cli.walk import report, write
 
+    if output.exists() and not output.is_dir():
+        raise NotADirectoryError(f"cannot write into {output}: it is a file; -o takes a folder")
     motion = pipeline.walk(distance=DISTANCE)
     output.mkdir(parents=True, exist_ok=True)
     report(motion, write(motion, [output / name for name in FILES]), [], as_json=False)

@@ -83,6 +83,10 @@ class ContactPlan:
     @staticmethod
     def of(walk: Proposal, stands: Footholds, targets: Footholds, body: Body) -> ContactPlan:
         """Freeze the corrected curves of a walk into a look-up table."""
+        # in the air the meta curve goes on as the toes turn, so that it is read with the right
+        # slope up to the very toe-off; only bearing feet use it
+        free, curves = ~walk.bearing(), walk.curves
+        curves["meta"] = np.where(free, -curves["pitch"] - curves["bend"], curves["meta"])
         blocks, slopes, columns, width = [], [], {}, 0
         for name, values in walk.curves.items():
             flat = values.reshape(len(walk.at), -1)
@@ -91,11 +95,13 @@ class ContactPlan:
             slopes.append(slope(walk.at, flat))
             columns[name] = slice(width, width + flat.shape[1])
             width += flat.shape[1]
+        table, rates = np.concatenate(blocks, axis=1), np.concatenate(slopes, axis=1)
+        _leave_as_rolled(walk, stands, body, rates, columns)
         return ContactPlan(
             body=body,
             at=walk.at,
-            table=np.concatenate(blocks, axis=1),
-            slopes=np.concatenate(slopes, axis=1),
+            table=table,
+            slopes=rates,
             columns=columns,
             upper_joints=walk.curves["upper"].shape[1],
             stance=walk.stance,
@@ -132,10 +138,10 @@ class ContactPlan:
         # the knee points half way between where the foot and where the pelvis face
         towards = ahead(read("foot_heading", 2)) + ahead(heading)[:, None]
         leg = two_bone_ik(hip, ankle, towards, thigh=self.body.thigh, shin=self.body.shin)
-        contacts = np.stack(
-            [down & (pitch >= 0.0), down & (pitch <= 0.0) & (meta == 0.0), down & (pitch <= 0.0)],
-            axis=-1,
-        )
+        # a walk that ends with a heel strike ends with that heel on the ground
+        touching = down | (phase >= 1.0)[:, None]
+        toes = touching & (pitch <= 0.0)
+        contacts = np.stack([touching & (pitch >= 0.0), toes & (meta == 0.0), toes], axis=-1)
         return Poses(
             center=center,
             heading=heading,
@@ -172,6 +178,32 @@ class ContactPlan:
         share = np.where(swing & ~down, share[:, None], 0.0)[..., None]
         tilt = (1.0 - share) * stand.tilt + share * self.targets.tilt[step][:, None]
         return ankle, multiply(exp(tilt), level)
+
+
+def _leave_as_rolled(
+    walk: Proposal,
+    stands: Footholds,
+    body: Body,
+    slopes: Float[np.ndarray, "M C"],
+    columns: dict[str, slice],
+) -> None:
+    """Give the ankle, at each toe-off, the very speed that rolling over the toe tip gives it."""
+    node = np.flatnonzero(walk.phase == walk.toe_off[walk.step])
+    if not len(node):
+        return
+    step = walk.step[node]
+    side = 1 - walk.stance[step]
+    stand, tiny = stands.at((step, side)), 1e-6
+    at = {name: walk.curves[name][node, side] for name in ("pitch", "meta")}
+    rate = {name: slopes[node, columns[name].start + side] for name in at}
+
+    def ankle(ahead_of: float) -> Float[np.ndarray, "k 3"]:
+        pitch, meta = (at[name] + ahead_of * rate[name] for name in at)
+        return stand.ankle(body.foot, pitch, meta)
+
+    speed = (ankle(tiny) - ankle(-tiny)) / (2.0 * tiny)
+    column = columns["ankle"].start + 3 * side[:, None] + np.arange(3)
+    slopes[node[:, None], column] = speed
 
 
 def local_legs(poses: Poses) -> dict[str, Float[np.ndarray, "F 2 4"]]:

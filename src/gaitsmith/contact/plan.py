@@ -180,36 +180,36 @@ def _swing(
     )[:, 0]
     pitch = pitch + np.repeat(land_pitch - walk.landing.pitch[steps], count) * w[:, 0]
 
-    ankle += _leaving_speed(walk, body, stands, side, free, first, count, ankle)
+    gained = _leaving_speed(walk, side, free, first, np.column_stack([ankle, pitch, bend]))
+    ankle, pitch, bend = ankle + gained[:, :3], pitch + gained[:, 3], bend + gained[:, 4]
     ankle[:, 1] += _clearance(body, ground, ankle, pitch, bend, heading, at)
     weight = smoothstep(at / 0.1) * smoothstep((1.0 - at) / 0.05)
     ankle = drawn_near(hip[free], ankle, weight, body)
     curves["ankle"][free, side] = ankle
     curves["foot_heading"][free, side] = heading
     curves["pitch"][free, side] = pitch
+    curves["bend"][free, side] = bend
 
 
 def _leaving_speed(
     walk: Proposal,
-    body: Body,
-    stands: Footholds,
     side: int,
     free: Bool[np.ndarray, "M"],
     first: Int[np.ndarray, "k"],
-    count: Int[np.ndarray, "k"],
-    ankle: Float[np.ndarray, "n 3"],
-) -> Float[np.ndarray, "n 3"]:
-    """What makes the ankle leave the ground with the speed it had on the toe tip.
+    swing: Float[np.ndarray, "n 5"],
+) -> Float[np.ndarray, "n 5"]:
+    """What makes the foot leave the ground with the speeds it had on the toe tip.
 
-    [KB92b] joins positions only (erratum D17). The correction fades over the first part of
-    the swing and moves neither end.
+    Columns are the ankle's three, the pitch and the bend of the toes; rows are the free nodes,
+    each swing beginning at ``first``. [KB92b] joins positions only (erratum D17). The
+    correction fades over the first part of the swing and moves neither end.
     """
-    at = walk.at[free]
-    node = np.flatnonzero(free)[first]
+    at, node, curves = walk.at[free], np.flatnonzero(free)[first], walk.curves
+    count = np.diff(np.append(first, len(at)))
 
     def slope(
-        x: Float[np.ndarray, "k 3"], y: Float[np.ndarray, "k 3 3"]
-    ) -> Float[np.ndarray, "k 3"]:
+        x: Float[np.ndarray, "k 3"], y: Float[np.ndarray, "k 3 c"]
+    ) -> Float[np.ndarray, "k c"]:
         """End slope of the parabola through three samples, the first being the end."""
         h0, h1 = (x[:, 1] - x[:, 0])[:, None], (x[:, 2] - x[:, 1])[:, None]
         d0, d1 = (y[:, 1] - y[:, 0]) / h0, (y[:, 2] - y[:, 1]) / h1
@@ -217,12 +217,16 @@ def _leaving_speed(
 
     after = first[:, None] + np.arange(3)
     before = node[:, None] - np.arange(3)
-    leaving = slope(walk.at[before], walk.curves["ankle"][before, side])
-    going = slope(at[after], ankle[after])
+    pitch, meta = curves["pitch"][before, side], curves["meta"][before, side]
+    bend = np.where(pitch < 0.0, -pitch - meta, 0.0)
+    rear = np.concatenate(
+        [curves["ankle"][before, side], pitch[..., None], bend[..., None]], axis=-1
+    )
+    change = slope(walk.at[before], rear) - slope(at[after], swing[after])
     span = LEAVING * (1.0 - walk.toe_off[walk.step[node]])
     u = np.clip((at - np.repeat(at[first], count)) / np.repeat(span, count), 0.0, 1.0)
     shape = u * (1.0 - u) ** 2
-    return np.repeat((leaving - going) * span[:, None], count, axis=0) * shape[:, None]
+    return np.repeat(change * span[:, None], count, axis=0) * shape[:, None]
 
 
 def _clearance(

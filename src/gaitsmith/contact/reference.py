@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaitsmith._checks import frozen_array
 from gaitsmith.errors import InvalidInputError
-from gaitsmith.geometry.curves import end_slope_correction, parabola_slopes
+from gaitsmith.geometry.curves import (
+    end_slope_correction,
+    hermite,
+    parabola_slopes,
+    pchip_slopes,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,6 +35,8 @@ CURVES: dict[str, tuple[int | None, ...]] = {
     "bend": (2,),
     "upper": (None, 3),
 }
+#: Farthest that two samples may be apart for the contact stage.
+FINEST = 1.0 / 36.0
 #: Those that are positions, and so move with the step.
 PLACES = ("center", "ankle")
 
@@ -84,6 +92,38 @@ class StepCurves:
         """Copy with some fields replaced; the copy is checked again."""
         return replace(self, **changes)  # type: ignore[arg-type]
 
+    def refined(self, *events: float) -> StepCurves:
+        """The same curves on samples well closer than :data:`FINEST`; itself if they are closer.
+
+        The contact stage corrects on samples: a coarse walk would escape it between them.
+        ``events`` are phases at which a curve may have a corner; none is read across them.
+        """
+        if np.diff(self.phase).max() <= FINEST * (1.0 + 1e-9):
+            return self
+        marks = np.unique([0.0, *(e for e in events if 0.0 < e < 1.0), 1.0])
+        pieces = []
+        for first, last in pairwise(marks):
+            own = self.phase[(self.phase >= first) & (self.phase <= last)]
+            more = [
+                np.linspace(a, b, int(np.ceil(2.0 * (b - a) / FINEST)) + 1)[:-1]
+                for a, b in pairwise(own)
+            ]
+            pieces.append((own, np.concatenate([*more, [last]])))
+        phase = np.concatenate(
+            [p[: None if i == len(pieces) - 1 else -1] for i, (_, p) in enumerate(pieces)]
+        )
+        curves = {}
+        for name in CURVES:
+            values = getattr(self, name)
+            flat = values.reshape(len(values), -1)
+            read = []
+            for i, (own, fine) in enumerate(pieces):
+                rows = flat[(self.phase >= own[0]) & (self.phase <= own[-1])]
+                fine = fine if i == len(pieces) - 1 else fine[:-1]
+                read.append(hermite(own, rows, pchip_slopes(own, rows), fine))
+            curves[name] = np.concatenate(read).reshape(len(phase), *values.shape[1:])
+        return StepCurves(phase=phase, **curves)
+
     @cached_property
     def end_speeds(self) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
         """Speed of the center at phase 0 and at phase 1, meters per step."""
@@ -134,6 +174,11 @@ class ReferenceStep:
     def with_(self, **changes: object) -> ReferenceStep:
         """Copy with some fields replaced."""
         return replace(self, **changes)  # type: ignore[arg-type]
+
+    def refined(self) -> ReferenceStep:
+        """Itself, with curves fine enough for the contact stage."""
+        fine = self.curves.refined(self.toe_off)
+        return self if fine is self.curves else self.with_(curves=fine)
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,6 +267,7 @@ def stack(steps: Sequence[ReferenceStep]) -> Proposal:
     if not steps:
         raise InvalidInputError("a walk needs at least one step")
     last = len(steps) - 1
+    steps = [s.refined() for s in steps]
 
     def joined(name: str) -> Float[np.ndarray, "M ..."]:
         parts = [getattr(s.curves, name)[: None if i == last else -1] for i, s in enumerate(steps)]

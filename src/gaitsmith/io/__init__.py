@@ -12,6 +12,7 @@ from pathlib import Path
 
 from gaitsmith.errors import UnknownFormatError
 from gaitsmith.io.bvh import write_bvh
+from gaitsmith.io.bvh_motion import read_bvh
 from gaitsmith.io.npz import read_npz, write_npz
 from gaitsmith.io.table import write_csv
 from gaitsmith.motion.motion import Motion
@@ -27,7 +28,7 @@ Reader = Callable[[Path], Motion]
 #: Writers by suffix, in lower case.
 WRITERS: dict[str, Writer] = {".bvh": write_bvh, ".csv": write_csv, ".npz": write_npz}
 #: Readers by suffix, in lower case.
-READERS: dict[str, Reader] = {".npz": read_npz}
+READERS: dict[str, Reader] = {".bvh": read_bvh, ".npz": read_npz}
 
 
 def save(motion: Motion, path: str | Path, writers: Mapping[str, Writer] = WRITERS) -> Path:

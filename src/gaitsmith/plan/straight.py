@@ -122,7 +122,9 @@ def plan_straight(
     # the first to land is the right one; standing, the left one is listed first
     side = (np.arange(len(along)) + RIGHT) % 2
     position = footstep_positions(along, side, stance, origin, heading, ground)
-    count = max(2, int(np.ceil(distance / PATH_SPACING)) + 1)
+    # mid-walk the hips are still behind the first point: the path begins at the rear foot
+    first = float(min(along[0], 0.0))
+    count = max(2, int(np.ceil((distance - first) / PATH_SPACING)) + 1)
     way = ahead(heading)[[0, 2]]
     return StepPlan(
         side=side,
@@ -131,7 +133,7 @@ def plan_straight(
         direction=np.full(len(along), heading),
         time=time,
         kinds=tuple(kinds),
-        path=np.asarray(origin) + np.linspace(0.0, distance, count)[:, None] * way,
+        path=np.asarray(origin) + np.linspace(first, distance, count)[:, None] * way,
     )
 
 

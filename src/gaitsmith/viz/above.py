@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.conventions import ahead, leftward
+from gaitsmith.skin.shoe import outline
 from gaitsmith.viz import palette
 from gaitsmith.viz.canvas import Area, nice_step, pairs
-from gaitsmith.viz.shoe import outline
 
 if TYPE_CHECKING:
     from jaxtyping import Float

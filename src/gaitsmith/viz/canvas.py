@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from jaxtyping import Float
 
-    from gaitsmith.viz.palette import Color
+    from gaitsmith.skin.palette import Color
 
 
 @cache

@@ -15,7 +15,7 @@ from gaitsmith.viz import palette
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
-    from gaitsmith.viz.mannequin import Mannequin
+    from gaitsmith.skin.mannequin import Mannequin
 
 VIEWS = ("right", "left", "front", "top", "three-quarter", "rear-quarter")
 

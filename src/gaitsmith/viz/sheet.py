@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.errors import InvalidInputError
+from gaitsmith.skin.palette import SIDE_LIMBS
 from gaitsmith.viz import palette
 from gaitsmith.viz.above import map_height, map_panel
 from gaitsmith.viz.canvas import Area, Canvas
@@ -140,7 +141,7 @@ def _header(canvas: Canvas, tracks: Tracks) -> None:
     canvas.text(_MARGIN, 74, "   ·   ".join(details), size=14)
     right = canvas.width - _MARGIN
     for side, (word, x) in enumerate((("left", right - 120), ("right", right - 50))):
-        canvas.box(x - 18, 37, x - 5, 50, palette.SIDE_LIMBS[side], round_by=3)
+        canvas.box(x - 18, 37, x - 5, 50, SIDE_LIMBS[side], round_by=3)
         canvas.text(x, 48, word, size=14, color=palette.INK)
 
 

@@ -13,7 +13,7 @@ from gaitsmith.conventions import SIDES, ahead
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import inverse, multiply, rotate
 from gaitsmith.motion.kinematics import motion_kinematics, sole_positions
-from gaitsmith.viz.mannequin import Mannequin, build_mannequin
+from gaitsmith.skin.mannequin import Mannequin, build_mannequin
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int

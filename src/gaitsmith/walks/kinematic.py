@@ -88,7 +88,7 @@ class KinematicWalk:
         ]
         if len(walks) == 1:
             return walks[0]
-        return densified(blend(*walks, share, start_height=start_height, before=before))
+        return densified(blend(walks[0], walks[1], share, start_height=start_height, before=before))
 
     def _around(self, body: Body, length: float) -> tuple[tuple[WalkData, ...], float]:
         """The one or two measured steps nearest to ``length``, and the share of the second."""

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.conventions import SIDE_SIGN, SIDES
-from gaitsmith.viz import palette
-from gaitsmith.viz.parts import HEAD_JOINT
-from gaitsmith.viz.shapes import ball, corner_normals, frame_along, resample, tube
+from gaitsmith.skin import palette
+from gaitsmith.skin.parts import HEAD_JOINT
+from gaitsmith.skin.shapes import ball, corner_normals, frame_along, resample, tube
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-    from gaitsmith.viz.parts import Maker
-    from gaitsmith.viz.shapes import Mesh
+    from gaitsmith.skin.parts import Maker
+    from gaitsmith.skin.shapes import Mesh
 
 # Half-widths of the trunk: share of hips-to-neck, half-width, half-depth, forward shift.
 _TRUNK = np.array(
@@ -37,7 +37,7 @@ _TRUNK = np.array(
 
 def add_trunk(maker: Maker) -> None:
     """Pelvis, then one piece a spine joint, on one continuous outline."""
-    chain = _spine(maker)
+    chain = spine_chain(maker)
     if not chain:
         return
     top = maker.find("neck")
@@ -110,7 +110,7 @@ def _side_normals(mesh: Mesh, visible: tuple[float, float]) -> Float[np.ndarray,
     return np.where(hidden[..., None], outward / np.maximum(length, 1e-12), normals)
 
 
-def _spine(maker: Maker) -> list[int]:
+def spine_chain(maker: Maker) -> list[int]:
     """Joints from the hips up to the one that carries neck, head or arms."""
     hips = maker.find("hips")
     if hips is None:

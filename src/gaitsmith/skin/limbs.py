@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.conventions import SIDE_SIGN, SIDES
-from gaitsmith.viz import palette
-from gaitsmith.viz.parts import ADULT
-from gaitsmith.viz.shapes import frame_along, tube
-from gaitsmith.viz.shoe import outsole, upper
+from gaitsmith.skin import palette
+from gaitsmith.skin.parts import ADULT
+from gaitsmith.skin.shapes import frame_along, tube
+from gaitsmith.skin.shoe import outsole, upper
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-    from gaitsmith.viz.palette import Color
-    from gaitsmith.viz.parts import Maker
+    from gaitsmith.skin.palette import Color
+    from gaitsmith.skin.parts import Maker
 
 
 def add_arm(maker: Maker, side: int) -> None:

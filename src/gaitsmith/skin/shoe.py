@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.viz.shapes import skin
+from gaitsmith.skin.shapes import skin
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-    from gaitsmith.viz.shapes import Mesh
+    from gaitsmith.skin.shapes import Mesh
 
 # A shoe last seen from above: share of the length from heel to toe tip, then half-widths of
 # the lateral and of the medial side as shares of the width at the ball. The medial side is

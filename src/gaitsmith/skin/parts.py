@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.conventions import SIDES
-from gaitsmith.viz.shapes import ball, corner_normals, frame_along, tube
-from gaitsmith.viz.shoe import Last, last_of
+from gaitsmith.skin.shapes import ball, corner_normals, frame_along, tube
+from gaitsmith.skin.shoe import Last, last_of
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
     from gaitsmith.motion.skeleton import Skeleton
-    from gaitsmith.viz.palette import Color
-    from gaitsmith.viz.shapes import Mesh
+    from gaitsmith.skin.palette import Color
+    from gaitsmith.skin.shapes import Mesh
 
 #: Height of the head joint above the soles over stature: the crown is 0.09 of it higher.
 HEAD_JOINT = 0.91

@@ -15,15 +15,15 @@ import numpy as np
 
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import rotate
-from gaitsmith.viz.limbs import add_arm, add_leg, add_shoe
-from gaitsmith.viz.parts import Maker, Part
-from gaitsmith.viz.trunk import add_head, add_trunk
+from gaitsmith.skin.limbs import add_arm, add_leg, add_shoe
+from gaitsmith.skin.parts import Maker, Part
+from gaitsmith.skin.trunk import add_head, add_trunk
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
     from gaitsmith.motion.skeleton import Skeleton
-    from gaitsmith.viz.shoe import Last
+    from gaitsmith.skin.shoe import Last
 
 __all__ = ["Mannequin", "Part", "build_mannequin"]
 

@@ -1,0 +1,184 @@
+"""Acclaim motions (.amc) with their skeletons (.asf), as the CMU data base has them.
+
+Each bone of the skeleton becomes a joint at its start that carries the bone's name, with
+axes along the world's in the rest pose; the angles about the bone's own axes are converted.
+The two tell neither the frame rate (CMU's is 120) nor the unit in so many words: CMU's
+``length 0.45`` means that 0.45 units are an inch.
+"""
+
+from __future__ import annotations
+
+import warnings
+from array import array
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith._checks import positive
+from gaitsmith.errors import FileFormatError, GaitsmithWarning
+from gaitsmith.geometry.rotations import IDENTITY, about, inverse, multiply, sign_continuous
+from gaitsmith.io._lines import Lines
+from gaitsmith.io.asf import Asf, Bone, read_asf
+from gaitsmith.io.units import LONGEST_LEG, SHORTEST_LEG, UNITS, guess_unit, unit_factor
+from gaitsmith.motion.motion import Motion
+from gaitsmith.motion.roles import humanoid_roles
+from gaitsmith.motion.skeleton import Skeleton
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from jaxtyping import Float
+
+#: Frames per second of nearly all of the CMU data base.
+CMU_RATE = 120.0
+_INCH = 0.0254
+_LARGEST = 1e9
+
+
+def read_amc(
+    path: Path, asf: Path | None = None, *, fps: float | None = None, unit: str | None = None
+) -> Motion:
+    """Motion in the .amc at ``path``.
+
+    Parameters
+    ----------
+    path
+        The file of angles.
+    asf
+        Its skeleton; None: ``02.asf`` or ``02_01.asf`` beside ``02_01.amc``, or the only one
+        in the folder.
+    fps
+        Frames per second, which the file does not tell; None: 120, with a warning.
+    unit
+        As in :func:`gaitsmith.io.bvh_motion.read_bvh`; None: by ``:units length``.
+
+    Raises
+    ------
+    FileFormatError
+        If either file is broken, or there is no skeleton.
+    OSError
+        If one cannot be opened.
+    """
+    skeleton_file = read_asf(_beside(path) if asf is None else asf)
+    values = _values(path, skeleton_file)
+    if fps is None:
+        fps = CMU_RATE
+        warnings.warn(
+            f"{path}: an .amc names no frame rate; {fps:g} frames a second taken",
+            GaitsmithWarning,
+            stacklevel=2,
+        )
+    factor = _factor(skeleton_file, path, unit)
+    root, rotations = _poses(skeleton_file, values, factor)
+    return Motion(
+        skeleton=_skeleton(skeleton_file, factor),
+        root_position=root,
+        rotations=sign_continuous(rotations),
+        fps=positive("fps", fps, "frames per second"),
+    )
+
+
+def _beside(path: Path) -> Path:
+    """The skeleton that belongs to ``path``."""
+    if not path.is_file():
+        path.open("rb").close()  # the disk says what is wrong
+    for stem in (path.stem, path.stem.rpartition("_")[0], path.stem.partition("_")[0]):
+        for suffix in (".asf", ".ASF"):
+            if stem and (found := path.with_name(stem + suffix)).is_file():
+                return found
+    others = sorted(p for p in path.parent.iterdir() if p.suffix.lower() == ".asf")
+    if len(others) == 1:
+        return others[0]
+    wanted = f"{path.stem.partition('_')[0]}.asf"
+    raise FileFormatError(path, f"an .amc needs its skeleton: there is no {wanted} beside it")
+
+
+def _values(path: Path, skeleton: Asf) -> Float[np.ndarray, "frames channels"]:
+    """All numbers, bone by bone in the skeleton's order."""
+    lines, widths = Lines(path), {bone.name: len(bone.dofs) for bone in skeleton.bones}
+    starts = dict(zip(widths, np.cumsum([0, *widths.values()]).tolist(), strict=False))
+    width = sum(widths.values())
+    numbers, row, filled = array("d"), [0.0] * width, 0
+    frames = 0
+    while (line := lines.next()) is not None:
+        words = line.split("#")[0].split()
+        if not words or words[0].startswith(":"):
+            continue
+        if len(words) == 1 and words[0].isdigit():
+            if frames and filled != width:
+                lines.fail(f"the frame before has {filled} of {width} values")
+            if frames:
+                numbers.extend(row)
+            frames, filled = frames + 1, 0
+            continue
+        name, count = words[0], len(words) - 1
+        if frames == 0 or name not in widths:
+            lines.fail(f"{name[:40]!r} is {'no bone' if frames else 'outside of the frames'}")
+        if count != widths[name]:
+            lines.fail(f"{name[:40]!r} has {widths[name]} values, here are {count}")
+        row[starts[name] : starts[name] + count] = [lines.value(w, name) for w in words[1:]]
+        filled += count
+    if frames == 0:
+        lines.fail("this is no Acclaim motion: it has no frames")
+    if filled != width:
+        lines.fail(f"the last frame has {filled} of {width} values")
+    numbers.extend(row)
+    values = np.array(numbers).reshape(frames, width)
+    if np.abs(values).max(initial=0.0) > _LARGEST:
+        lines.fail(f"a value beyond {_LARGEST:g} is no figure's")
+    return values
+
+
+def _turns(bone: Bone, values: Float[np.ndarray, "frames dofs"], degrees: bool) -> np.ndarray:
+    """Rotations of a bone about its own axes, first degree of freedom first."""
+    out = np.broadcast_to(IDENTITY, (len(values), 4))
+    for dof, angle in zip(bone.dofs, values.T, strict=True):
+        if dof.startswith("r"):
+            out = multiply(about(dof[1], np.radians(angle) if degrees else angle), out)
+    return multiply(multiply(bone.axes, out), inverse(bone.axes))
+
+
+def _poses(
+    skeleton: Asf, values: Float[np.ndarray, "frames channels"], factor: float
+) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames joints 4"]]:
+    root = np.zeros((len(values), 3))
+    rotations = np.empty((len(values), len(skeleton.bones), 4))
+    column = 0
+    for joint, bone in enumerate(skeleton.bones):
+        here = values[:, column : column + len(bone.dofs)]
+        rotations[:, joint] = _turns(bone, here, skeleton.degrees)
+        column += len(bone.dofs)
+        for dof, value in zip(bone.dofs, here.T, strict=True):
+            if dof.startswith("t"):
+                root[:, "xyz".index(dof[1])] = factor * value
+    return root, rotations
+
+
+def _skeleton(skeleton: Asf, factor: float) -> Skeleton:
+    vectors = factor * np.array([bone.vector for bone in skeleton.bones])
+    parents = skeleton.parents
+    offsets = np.array([np.zeros(3) if parent < 0 else vectors[parent] for parent in parents])
+    leaves = [joint not in set(parents) for joint in range(len(parents))]
+    ends = np.where(np.array(leaves)[:, None], vectors, 0.0)
+    return Skeleton(tuple(bone.name for bone in skeleton.bones), parents, offsets, ends=ends)
+
+
+def _factor(skeleton: Asf, path: Path, unit: str | None) -> float:
+    """Meters of the file's unit."""
+    if unit is not None:
+        return unit_factor(unit)
+    factor = _INCH / skeleton.unit_length
+    figure = _skeleton(skeleton, 1.0)
+    if np.abs(figure.offsets).max() > _LARGEST:
+        raise FileFormatError(path, f"a bone beyond {_LARGEST:g} units is no figure's")
+    roles = humanoid_roles(figure.names, figure.parents, need=()).joints
+    lengths = np.linalg.norm(figure.offsets, axis=-1)
+    guess, why = guess_unit(lengths, figure, roles)
+    thigh, shank = roles.get("leftLowerLeg"), roles.get("leftFoot")
+    if thigh is None or shank is None:
+        return factor
+    leg = factor * float(lengths[thigh] + lengths[shank])
+    if SHORTEST_LEG <= leg <= LONGEST_LEG or not why:
+        return factor
+    warnings.warn(f"{path}: its unit of length makes no person; {why}", GaitsmithWarning, 3)
+    return UNITS[guess]

@@ -1,0 +1,1 @@
+"""The figure around a skeleton: rigid pieces for pictures, one skinned mesh for files."""
