@@ -20,7 +20,7 @@ TOE_OFF, LONGEST = 0.125, 1.0
 class CompassWalk:
     """Stiff legs on a pivot; starting and stopping are steps of which one half is missing."""
 
-    def __init__(self, samples=129):
+    def __init__(self, samples=33):
         self.samples = samples
 
     def step(self, body, request):

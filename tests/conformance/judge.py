@@ -199,8 +199,7 @@ def _landings(motion):
     labels, wrong = motion.labels, 0
     for side, when in zip(labels.footstep_side[2:], labels.footstep_time[2:], strict=True):
         first = int(np.ceil(when * motion.fps - 1e-6))
-        # a landing in the very last frame has a test of its own
-        if first < len(motion) - 1 and not motion.contacts[first, side].any():
+        if first < len(motion) and not motion.contacts[first, side].any():
             wrong += 1
         if motion.contacts[first - 1, side].any():
             wrong += 1

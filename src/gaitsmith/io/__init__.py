@@ -1,7 +1,8 @@
-"""Motions to files and back: one table of writers, one of readers, one atomic `save`.
+"""Motions, markers and tables to files and back: tables of readers and writers, one `save`.
 
-A new format is one module and one line in :data:`WRITERS` or :data:`READERS`. Formats that
-other layers write (pictures) are added by who calls :func:`save`, through ``writers``.
+A new format is one module and one line in :data:`WRITERS`, :data:`READERS`,
+:data:`MARKER_READERS` or :data:`TABLE_READERS`. Formats that other layers write (pictures)
+are added by who calls :func:`save`, through ``writers``.
 """
 
 from __future__ import annotations
@@ -9,16 +10,35 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import TypeVar
 
 from gaitsmith.errors import UnknownFormatError
+from gaitsmith.io.amc import read_amc
 from gaitsmith.io.bvh import write_bvh
 from gaitsmith.io.bvh_motion import read_bvh
+from gaitsmith.io.marker_csv import read_marker_csv
 from gaitsmith.io.npz import read_npz, write_npz
+from gaitsmith.io.sto import Table, read_sto
 from gaitsmith.io.table import write_csv
-from gaitsmith.motion.motion import Motion
+from gaitsmith.io.trc import read_trc
+from gaitsmith.motion.motion import Markers, Motion
 
-__all__ = ["READERS", "WRITERS", "Reader", "Writer", "load", "save", "save_all"]
+__all__ = [
+    "MARKER_READERS",
+    "READERS",
+    "TABLE_READERS",
+    "WRITERS",
+    "Reader",
+    "Table",
+    "Writer",
+    "load",
+    "load_markers",
+    "load_table",
+    "save",
+    "save_all",
+]
 
+_Read = TypeVar("_Read")
 #: Writes a Motion in package conventions to a path; units, axes and quaternion order of the
 #: format are its own business. The path has the format's suffix, though not its final name.
 Writer = Callable[[Motion, Path], None]
@@ -28,7 +48,11 @@ Reader = Callable[[Path], Motion]
 #: Writers by suffix, in lower case.
 WRITERS: dict[str, Writer] = {".bvh": write_bvh, ".csv": write_csv, ".npz": write_npz}
 #: Readers by suffix, in lower case.
-READERS: dict[str, Reader] = {".bvh": read_bvh, ".npz": read_npz}
+READERS: dict[str, Reader] = {".amc": read_amc, ".bvh": read_bvh, ".npz": read_npz}
+#: Readers of measured markers by suffix.
+MARKER_READERS: dict[str, Callable[[Path], Markers]] = {".csv": read_marker_csv, ".trc": read_trc}
+#: Readers of tables of numbers over time by suffix.
+TABLE_READERS: dict[str, Callable[[Path], Table]] = {".mot": read_sto, ".sto": read_sto}
 
 
 def save(motion: Motion, path: str | Path, writers: Mapping[str, Writer] = WRITERS) -> Path:
@@ -85,7 +109,20 @@ def load(path: str | Path, readers: Mapping[str, Reader] = READERS) -> Motion:
     OSError
         If it cannot be opened.
     """
-    path = Path(path)
+    return _read(Path(path), readers)
+
+
+def load_markers(path: str | Path) -> Markers:
+    """Markers in the file at ``path`` (.trc, .csv). Raises as :func:`load` does."""
+    return _read(Path(path), MARKER_READERS)
+
+
+def load_table(path: str | Path) -> Table:
+    """Table in the file at ``path`` (.sto, .mot). Raises as :func:`load` does."""
+    return _read(Path(path), TABLE_READERS)
+
+
+def _read(path: Path, readers: Mapping[str, Callable[[Path], _Read]]) -> _Read:
     read = readers.get(path.suffix.lower())
     if read is None:
         raise UnknownFormatError(path.suffix, readers, verb="read")

@@ -12,11 +12,15 @@ if TYPE_CHECKING:
 
 
 class Lines:
-    """The lines of the file at ``path`` one by one; ``number`` is that of the last one read."""
+    """The lines of the file at ``path`` one by one.
+
+    ``number`` is that of the last one read, ``size`` the bytes of the file.
+    """
 
     def __init__(self, path: Path) -> None:
         self.path, self.number = path, 0
         data = path.read_bytes()
+        self.size = len(data)
         if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
             text = data.decode("utf-16", errors="replace")
         else:

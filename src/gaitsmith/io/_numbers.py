@@ -32,20 +32,26 @@ class _Odd:
 class NumberScan:
     """Numbers from ``start`` to the end of ``data``, ``width`` a row, rows over any lines.
 
-    ``line`` is the number of the line at ``start``, ``path`` names the file in messages.
+    ``line`` is the number of the line at ``start``; ``path`` names the file in messages and
+    ``what`` its rows.
     """
 
-    def __init__(self, path: str, data: bytes, start: int, line: int, width: int) -> None:
+    def __init__(
+        self, path: str, data: bytes, start: int, line: int, width: int, what: str = "rows"
+    ) -> None:
+        self.what = what
         self.path, self.data, self.start, self.width = path, data, start, width
-        self._first_line = line
         self._line = line  # of the next byte
         self._last = line  # with a number on it
         self._total = self._at_line_start = 0
         self._blank: _Odd | None = None
         self._crossing: _Odd | None = None
 
-    def rows(self, declared: int, said: list[str]) -> Float[np.ndarray, "rows width"]:
-        """All rows; adds to ``said`` what is odd. Raises FileFormatError with the line."""
+    def rows(self, declared: int | None, said: list[str]) -> Float[np.ndarray, "rows width"]:
+        """All rows; adds to ``said`` what is odd. Raises FileFormatError with the line.
+
+        ``declared`` is how many rows the file says that it has, None if it does not.
+        """
         blocks = [np.zeros(0), *self._blocks()]
         values = np.concatenate(blocks)
         rows, extra = divmod(len(values), self.width) if self.width else (0, len(values))
@@ -54,20 +60,20 @@ class NumberScan:
             missing = self.width - crossing.before % self.width
             raise FileFormatError(
                 self.path,
-                f"{crossing.count} values where {missing} were expected: a frame has {self.width}",
+                f"{crossing.count} values where {missing} were expected: each of the {self.what} "
+                f"has {self.width}",
                 line=crossing.line,
             )
-        if extra or rows < declared:
+        if extra or rows < (declared or 0):
+            says = "" if declared is None else f"declares {declared} {self.what}, but "
             more = f" and {extra} of {self.width} values of another" if extra else ""
             raise FileFormatError(
-                self.path,
-                f"declares {declared} frames, but ends after {rows}{more}",
-                line=self._last,
+                self.path, f"{says}ends after {rows} {self.what}{more}", line=self._last
             )
         if self._blank is not None and self._blank.before < len(values):
-            said.append(f"{self.path}:{self._blank.line}: blank line between the frames")
-        if rows > declared:
-            said.append(f"{self.path}: declares {declared} frames, has {rows}: all are read")
+            said.append(f"{self.path}:{self._blank.line}: blank line between the {self.what}")
+        if declared is not None and rows > declared:
+            said.append(f"{self.path}: declares {declared} {self.what}, has {rows}: all are read")
         return values.reshape(rows, self.width)
 
     def _blocks(self) -> list[Float[np.ndarray, "values"]]:

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 CMU_RATE = 120.0
 _INCH = 0.0254
 _LARGEST = 1e9
+#: Poses (joints x frames) that need no number in the file to be believed.
+_FREE_POSES = 1_000_000
 
 
 def read_amc(
@@ -99,10 +101,12 @@ def _values(path: Path, skeleton: Asf) -> Float[np.ndarray, "frames channels"]:
     starts = dict(zip(widths, np.cumsum([0, *widths.values()]).tolist(), strict=False))
     width = sum(widths.values())
     numbers, row, filled = array("d"), [0.0] * width, 0
-    frames = 0
+    frames, seen = 0, set[str]()
     while (line := lines.next()) is not None:
         words = line.split("#")[0].split()
         if not words or words[0].startswith(":"):
+            if words and words[0].upper() in (":DEGREES", ":RADIANS"):
+                degrees = words[0].upper() == ":DEGREES"
             continue
         if len(words) == 1 and words[0].isdigit():
             if frames and filled != width:
@@ -110,10 +114,15 @@ def _values(path: Path, skeleton: Asf) -> Float[np.ndarray, "frames channels"]:
             if frames:
                 numbers.extend(row)
             frames, filled = frames + 1, 0
+            seen.clear()
+            if frames * len(widths) > max(_FREE_POSES, 8 * (len(numbers) + width)):
+                lines.fail(f"{len(widths)} bones with {width} values a frame are no figure")
             continue
         name, count = words[0], len(words) - 1
-        if frames == 0 or name not in widths:
-            lines.fail(f"{name[:40]!r} is {'no bone' if frames else 'outside of the frames'}")
+        if frames == 0 or name not in widths or name in seen:
+            what = "twice in a frame" if name in seen else "no bone of its skeleton"
+            lines.fail(f"{name[:40]!r} is {what if frames else 'outside of the frames'}")
+        seen.add(name)
         if count != widths[name]:
             lines.fail(f"{name[:40]!r} has {widths[name]} values, here are {count}")
         row[starts[name] : starts[name] + count] = [lines.value(w, name) for w in words[1:]]
@@ -129,7 +138,9 @@ def _values(path: Path, skeleton: Asf) -> Float[np.ndarray, "frames channels"]:
     return values
 
 
-def _turns(bone: Bone, values: Float[np.ndarray, "frames dofs"], degrees: bool) -> np.ndarray:
+def _turns(
+    bone: Bone, values: Float[np.ndarray, "frames dofs"], degrees: bool
+) -> Float[np.ndarray, "frames 4"]:
     """Rotations of a bone about its own axes, first degree of freedom first."""
     out = np.broadcast_to(IDENTITY, (len(values), 4))
     for dof, angle in zip(bone.dofs, values.T, strict=True):

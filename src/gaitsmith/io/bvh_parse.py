@@ -74,7 +74,7 @@ def parse_bvh(data: bytes, path: str = "<bvh>") -> BvhFile:
     width = sum(map(len, tree.channels))
     if width == 0 and declared > 0:
         words.fail(f"declares {declared} frames, but no joint has a channel")
-    scan = NumberScan(path, words.data, words.at, words.line + 1, width)
+    scan = NumberScan(path, words.data, words.at, words.line + 1, width, "frames")
     values = scan.rows(declared, said)
     return BvhFile(
         names=tuple(tree.names),
