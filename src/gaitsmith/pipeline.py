@@ -19,11 +19,11 @@ from gaitsmith.errors import GaitsmithWarning, InvalidInputError, UnknownNameErr
 from gaitsmith.ground import GROUNDS
 from gaitsmith.plan.pace import UNUSUAL_FROUDE, choose_pace, froude
 from gaitsmith.plan.straight import Stance, plan_straight
+from gaitsmith.synthesis.gaits import GAITS
 from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
 from gaitsmith.synthesis.straight import StraightGenerator
 from gaitsmith.synthesis.upper_body import Manner
-from gaitsmith.walks import WALKS
 from gaitsmith.walks.generalize import LONG_STEP, check_step_length
 
 if TYPE_CHECKING:
@@ -97,7 +97,8 @@ def walk(
     toe_out
         Radians that each foot turns out.
     manner
-        Sizes of the rules above the legs; ``Manner(pelvis=False)`` switches a layer off.
+        Sizes of the rules above the legs of a gait that has no upper body of its own
+        (``winter``); ``Manner(pelvis=False)`` switches a layer off.
     fps
         Frames per second; frame ``i`` is at ``i / fps`` seconds.
     seed
@@ -131,8 +132,8 @@ def walk(
     fps = positive("fps", fps, "frames per second")
     if fps > FASTEST_FPS:
         raise InvalidInputError(f"fps must be at most {FASTEST_FPS:g}, got {fps:g}")
-    if gait not in WALKS:
-        raise UnknownNameError("gait", gait, WALKS)
+    if gait not in GAITS:
+        raise UnknownNameError("gait", gait, GAITS)
     one_of("start", start, ("stand", "walk"))
     one_of("stop", stop, ("stand", "walk"))
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
@@ -164,7 +165,8 @@ def walk(
     plan = plan_straight(
         distance=distance, pace=pace, stance=stance, ground=ground, start=start, stop=stop
     )
-    generator = StraightGenerator(WALKS[gait](), ground, manner)
+    style = GAITS[gait](manner)
+    generator = StraightGenerator(style.walk, ground, style.overlay)
     prepared = prepare_walk(plan, generator, who, ground, rest=REST)
     return sample_walk(prepared, who, ground, fps=fps, recipe=recipe)
 

@@ -35,5 +35,6 @@ def test_a_compass_walks_and_keeps_every_promise(who, ratio, start, stop):
     assert broken(walked(who, ratio, start, stop)) == {}
 
 
-def test_the_promises_do_not_hang_on_how_finely_a_walk_is_sampled():
-    assert broken(walked(1.75, 0.9, "walk", "walk", samples=33)) == {}
+@pytest.mark.parametrize("samples", [9, 17, 129, 1025])
+def test_the_promises_do_not_hang_on_how_finely_a_walk_is_sampled(samples):
+    assert broken(walked(1.75, 0.9, "walk", "walk", samples=samples)) == {}

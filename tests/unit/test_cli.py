@@ -156,7 +156,8 @@ def test_list_shows_the_whole_family_with_a_word_on_each(run, kind):
     code, out, err = run("list", kind)
     assert (code, err) == (0, "")
     lines = [line.split(maxsplit=1) for line in out.splitlines()]
-    assert {line[0] for line in lines} == set(FAMILIES[kind])
+    assert {line[0] for line in lines} >= set(FAMILIES[kind])
+    assert len({line[0] for line in lines}) == len(lines)
     assert all(len(line) == 2 for line in lines)
 
 
@@ -176,7 +177,8 @@ def test_version(run):
 
 # help ------------------------------------------------------------------------------------
 
-COMMANDS = {"demo", "walk", "list"}
+#: Commands of design section 5; those that are not built yet must not show.
+DESIGNED = {"demo", "walk", "learn", "compose", "certify", "measure", "convert", "list"}
 OPTIONS = {
     "walk": "output distance body gait step-length speed cadence start stop step-width toe-out "
     "fps seed json help",
@@ -185,23 +187,33 @@ OPTIONS = {
 }
 
 
-def test_help_shows_what_exists_and_nothing_else(run):
+def listed_commands(run):
     code, out, err = run("--help")
     assert (code, err) == (0, "")
-    listed = out.split("Commands:")[1]
-    assert set(re.findall(r"^  ([a-z]+)  ", listed, re.MULTILINE)) == COMMANDS
+    return set(re.findall(r"^  ([a-z]+)  ", out.split("Commands:")[1], re.MULTILINE))
 
 
-@pytest.mark.parametrize("command", sorted(COMMANDS))
+def test_help_shows_what_exists(run):
+    commands = listed_commands(run)
+    assert set(OPTIONS) <= commands <= DESIGNED
+    for command in commands:
+        code, out, err = run(command, "--help")
+        assert (code, err) == (0, "")
+        assert out.startswith("Usage: ")
+
+
+def test_what_is_not_built_is_no_command(run):
+    for planned in DESIGNED - listed_commands(run):
+        code, out, err = run(planned)
+        assert (code, out) == (2, "")
+        assert f"No such command '{planned}'" in err
+
+
+@pytest.mark.parametrize("command", OPTIONS)
 def test_help_of_a_command(run, command):
     code, out, _ = run(command, "--help")
     assert code == 0
     assert set(re.findall(r"--([a-z-]+)", out)) == set(OPTIONS[command].split())
-
-
-@pytest.mark.parametrize("planned", ["learn", "compose", "certify", "measure", "convert"])
-def test_what_is_not_built_is_no_command(run, planned):
-    assert run(planned)[0] == 2
 
 
 # wrong usage: 2 --------------------------------------------------------------------------

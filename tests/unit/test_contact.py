@@ -202,7 +202,8 @@ def test_a_step_whose_foot_leaves_between_samples_is_refused():
 def test_a_landing_foot_is_put_where_the_ground_is():
     """The proposal is for one foothold; another near it is met exactly all the same."""
     step = one_step()
-    moved = replace(step, target=step.target + [0.01, 0.0, -0.02])
+    heading = step.target_heading + 0.1
+    moved = replace(step, target=step.target + [0.01, 0.0, -0.02], target_heading=heading)
     poses = plan_contact([moved], BODY, GROUND).poses(np.array([1.0]))
     swing, foot = 1 - step.stance, BODY.foot
     hip = poses.center + turn(
@@ -211,6 +212,5 @@ def test_a_landing_foot_is_put_where_the_ground_is():
     knee = hip + turn(poses.thigh[:, swing], [0.0, -BODY.thigh, 0.0])
     ankle = knee + turn(poses.shin[:, swing], [0.0, -BODY.shin, 0.0])
     heel = ankle + turn(poses.foot[:, swing], [0.0, -foot.ankle_height, -foot.heel])
-    heading = step.target_heading
     ahead = np.array([np.sin(heading), 0.0, np.cos(heading)])
     np.testing.assert_allclose(heel[0], moved.target - foot.heel * ahead, atol=1e-9)

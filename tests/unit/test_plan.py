@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from people import GROUND, straight_plan
 
 from gaitsmith.body.presets import body_from
-from gaitsmith.errors import InvalidInputError
+from gaitsmith.errors import InfeasibleError, InvalidInputError
 from gaitsmith.ground import Flat
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.pace import Pace
@@ -63,7 +63,7 @@ def test_the_last_three_shorten_one_after_the_other(distance, length, start):
 def test_strides_without_a_stop_are_whole(distance, length, start):
     begin = FIRST_STEP * length if start == "stand" else 0.0
     if start == "walk" and distance < length:
-        with pytest.raises(InvalidInputError, match="holds no step"):
+        with pytest.raises(InfeasibleError, match="holds no step"):
             stride_lengths(distance, length, start, "walk")
         return
     strides = stride_lengths(distance, length, start, "walk")
@@ -113,8 +113,8 @@ def test_a_plan_from_stand_to_stand(body):
     assert plan.kinds[0] == "start"
     assert plan.kinds[-1] == "stop"
     assert set(plan.kinds[1:-1]) == {"walk"}
-    assert plan.side[:3].tolist() == [1, 0, 1]
-    np.testing.assert_allclose(plan.position[:2], [[-0.06, 0, 0], [0.06, 0, 0]], atol=1e-12)
+    assert plan.side[:4].tolist() == [0, 1, 1, 0], "the left one is listed first, the right lands"
+    np.testing.assert_allclose(plan.position[:2], [[0.06, 0, 0], [-0.06, 0, 0]], atol=1e-12)
     np.testing.assert_allclose(plan.position[-2:, 2], 4.0, atol=1e-12)
     np.testing.assert_allclose(plan.heading, np.where(plan.side == 0, 0.1, -0.1))
     assert (plan.direction == 0.0).all()
@@ -145,13 +145,15 @@ def test_steps_of_a_plan_are_chained(body):
     for i, step in enumerate(steps):
         assert step.duration == pytest.approx(plan.durations[i])
         assert step.stance.side != step.target.side == step.origin.side
-        for foot, index in ((step.origin, i), (step.stance, i + 1), (step.target, i + 2)):
+        # standing, the left foot is listed first and the right one leaves first
+        origin, stance = ((1, 0), (0, 2))[i] if i < 2 else (i, i + 1)
+        for foot, index in ((step.origin, origin), (step.stance, stance), (step.target, i + 2)):
             np.testing.assert_array_equal(foot.position, plan.position[index])
             assert (foot.heading, foot.time) == (plan.heading[index], plan.time[index])
     assert steps[0].before is None
     assert steps[-1].following is None
     np.testing.assert_array_equal(steps[0].following.position, plan.position[3])
-    np.testing.assert_array_equal(steps[1].before.position, plan.position[0])
+    np.testing.assert_array_equal(steps[1].before.position, plan.position[1])
 
 
 def test_footsteps_lie_on_the_ground():
@@ -224,8 +226,8 @@ def test_a_good_plan_is_one_and_cannot_be_changed():
         ),
         ({"kinds": ("start",)}, "4 footsteps make 2 steps, got 1 kinds"),
         ({"side": [2, 0, 1, 0]}, r"side must be 0 \(left\) or 1 \(right\)"),
-        ({"side": [1, 0, 0, 1]}, "sides must alternate: footsteps 1 and 2 are both left"),
-        ({"side": [1, 1, 0, 1]}, "sides must alternate: footsteps 0 and 1 are both right"),
+        ({"side": [1, 0, 1, 1]}, "sides must alternate: footsteps 2 and 3 are both right"),
+        ({"side": [1, 1, 0, 1]}, "must be a left and a right one, both are right"),
         ({"time": [0.0, 0.1, 0.5, 1.0]}, "time must be 0 for both initial feet and then rise"),
         ({"time": [0.0, 0.0, 0.5, 0.5]}, "then rise"),
         ({"time": [0.0, 0.0, 0.0, 0.5]}, "then rise"),

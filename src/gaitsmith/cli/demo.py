@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 #: What the demo writes.
-FILES = ("walk.bvh", "walk.npz", "walk.png", "walk.gif")
+FILES = ("walk.glb", "walk.bvh", "walk.npz", "walk.png", "walk.gif")
 DISTANCE = 5.0
 
 
@@ -17,7 +17,7 @@ def demo(
         "demo"
     ),
 ) -> None:
-    """Walk 5 m on built-in data and write walk.bvh, walk.npz, walk.png, walk.gif."""
+    """Walk 5 m on built-in data and write walk.glb, walk.bvh, walk.npz, walk.png, walk.gif."""
     from gaitsmith import pipeline
     from gaitsmith.cli.walk import report, write
 

@@ -31,9 +31,9 @@ def rows(kind: str) -> list[tuple[str, str]]:
 
         return [(name, _first_line(make)) for name, make in GROUNDS.items()]
     if kind == "gaits":
-        from gaitsmith.walks import WALKS
+        from gaitsmith.synthesis.gaits import GAITS
 
-        return [(name, _first_line(make)) for name, make in WALKS.items()]
+        return [(name, _first_line(make)) for name, make in GAITS.items()]
     from gaitsmith.pipeline import WRITERS
 
     return [(suffix, _FORMATS.get(suffix, "")) for suffix in sorted(WRITERS)]
@@ -43,6 +43,7 @@ _FORMATS = {
     ".bvh": "motion for animation tools, centimeters, Mixamo-style names",
     ".csv": "positions of joints and soles, contacts and phases, one row a frame",
     ".gif": "animated picture",
+    ".glb": "skinned, animated figure for 3D tools and game engines",
     ".npz": "everything, exact: rotations, positions, soles, contacts, footsteps, recipe",
     ".png": "contact sheet: side, front, top with footprints, joint curves",
 }

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from gaitsmith._version import __version__
+from gaitsmith.cli.convert import convert
 from gaitsmith.cli.demo import demo
 from gaitsmith.cli.listing import listing
 from gaitsmith.cli.walk import walk
@@ -23,6 +24,7 @@ app = typer.Typer(
 )
 app.command()(demo)
 app.command()(walk)
+app.command()(convert)
 app.command("list")(listing)
 
 

@@ -46,7 +46,10 @@ class Footholds:
         return self.position + points[..., :1] * self.forward + points[..., 1:] * self.normal
 
     def ankle(
-        self, foot: Foot, pitch: Float[np.ndarray, "*n"], meta: Float[np.ndarray, "*n"]
+        self,
+        foot: Foot,
+        pitch: Float[np.ndarray, "*n"] | float,
+        meta: Float[np.ndarray, "*n"] | float,
     ) -> Float[np.ndarray, "*n 3"]:
         """World position of the ankle of a foot that stands here."""
         return self.place(rolled_ankle(foot, pitch, meta))

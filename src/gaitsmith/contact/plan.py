@@ -55,7 +55,13 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
     slack = np.where(down, 0.0, np.inf)
     share = walk.phase / np.minimum(walk.toe_off[walk.step], 1.0)
     slack[rear] = (REAR_SLACK * body.leg_length * share)[rear.any(-1)]
-    down_by = lowering(walk.at, hip, walk.curves["ankle"], slack, leg_length=body.leg_length)
+    ankle = np.array(walk.curves["ankle"])
+    if walk.toe_off[-1] < 1.0:  # a walk that ends with a heel strike must reach that foothold
+        swing = 1 - walk.stance[-1]
+        last = walk.landing.pitch[-1]
+        ankle[-1, swing] = targets.at(-1).ankle(body.foot, last, 0.0)
+        slack[-1, swing] = 0.0
+    down_by = lowering(walk.at, hip, ankle, slack, leg_length=body.leg_length)
     walk.curves["center"][:, 1] -= down_by
     hip[..., 1] -= down_by[:, None]
     _raise_rear_heels(walk, body, stands, rear, hip)

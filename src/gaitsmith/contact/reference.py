@@ -167,7 +167,10 @@ class ReferenceStep:
     speed_change: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] | None = None
 
     def __post_init__(self) -> None:
-        """Check that the foot leaves on a sample."""
+        """Check the places, and that the foot leaves on a sample."""
+        places = np.concatenate([self.origin, np.ravel(self.foothold), self.target])
+        if places.shape != (12,) or not np.isfinite(places).all():
+            raise InvalidInputError("origin, foothold and target must be 1, 2 and 1 finite points")
         if self.toe_off < 1.0 and self.toe_off not in self.curves.phase:
             raise InvalidInputError("phase must hold toe_off, so that the foot leaves on a sample")
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -16,6 +17,7 @@ from gaitsmith.errors import UnknownFormatError
 from gaitsmith.io.amc import read_amc
 from gaitsmith.io.bvh import write_bvh
 from gaitsmith.io.bvh_motion import read_bvh
+from gaitsmith.io.gltf import write_glb
 from gaitsmith.io.marker_csv import read_marker_csv
 from gaitsmith.io.npz import read_npz, write_npz
 from gaitsmith.io.sto import Table, read_sto
@@ -34,6 +36,7 @@ __all__ = [
     "load",
     "load_markers",
     "load_table",
+    "place",
     "save",
     "save_all",
 ]
@@ -46,7 +49,12 @@ Writer = Callable[[Motion, Path], None]
 Reader = Callable[[Path], Motion]
 
 #: Writers by suffix, in lower case.
-WRITERS: dict[str, Writer] = {".bvh": write_bvh, ".csv": write_csv, ".npz": write_npz}
+WRITERS: dict[str, Writer] = {
+    ".bvh": write_bvh,
+    ".csv": write_csv,
+    ".glb": write_glb,
+    ".npz": write_npz,
+}
 #: Readers by suffix, in lower case.
 READERS: dict[str, Reader] = {".amc": read_amc, ".bvh": read_bvh, ".npz": read_npz}
 #: Readers of measured markers by suffix.
@@ -80,21 +88,31 @@ def save_all(
     Raises as :func:`save` does. All files are complete before the first takes its place.
     """
     targets = [Path(path) for path in paths]
-    jobs = [(_writer(target, writers), target, _partial(target)) for target in targets]
-    try:
-        for write, target, partial in jobs:
-            try:
-                write(motion, partial)
-            except OSError as error:
-                if error.filename is not None and Path(os.fsdecode(error.filename)) == partial:
-                    error.filename = str(target)  # nobody knows the name of the partial file
-                raise
-        for _, target, partial in jobs:
-            partial.replace(target)
-    finally:
-        for _, _, partial in jobs:
-            partial.unlink(missing_ok=True)
+    jobs = [(partial(_writer(target, writers), motion), target) for target in targets]
+    place(jobs)
     return targets
+
+
+def place(jobs: Iterable[tuple[Callable[[Path], None], Path]]) -> None:
+    """Let every function write a file beside its target, then move all to their targets.
+
+    The files appear whole or not at all, and none does if one cannot be written. Raises what
+    the functions raise, and OSError as :func:`save` does.
+    """
+    todo = [(write, target, _beside(target)) for write, target in jobs]
+    try:
+        for write, target, temporary in todo:
+            try:
+                write(temporary)
+            except OSError as error:
+                if error.filename is not None and Path(os.fsdecode(error.filename)) == temporary:
+                    error.filename = str(target)  # nobody knows the name of the other file
+                raise
+        for _, target, temporary in todo:
+            temporary.replace(target)
+    finally:
+        for _, _, temporary in todo:
+            temporary.unlink(missing_ok=True)
 
 
 def load(path: str | Path, readers: Mapping[str, Reader] = READERS) -> Motion:
@@ -130,17 +148,16 @@ def _read(path: Path, readers: Mapping[str, Callable[[Path], _Read]]) -> _Read:
 
 
 def _writer(target: Path, writers: Mapping[str, Writer]) -> Writer:
-    """Writer of the suffix, once it is known that there is a place for its file."""
     writer = writers.get(target.suffix.lower())
     if writer is None:
         raise UnknownFormatError(target.suffix, writers)
+    return writer
+
+
+def _beside(target: Path) -> Path:
+    """Name beside ``target`` that no other file has, with its suffix, if there is a place."""
     if not target.parent.is_dir():
         raise FileNotFoundError(f"cannot write {target}: there is no folder {target.parent}")
     if target.is_dir():
         raise IsADirectoryError(f"cannot write {target}: it is a folder")
-    return writer
-
-
-def _partial(target: Path) -> Path:
-    """Name beside ``target`` that no other file has, with its suffix."""
     return target.with_name(f".gaitsmith-{os.urandom(8).hex()}{target.suffix}")

@@ -45,6 +45,7 @@ class NumberScan:
         self._last = line  # with a number on it
         self._total = self._at_line_start = 0
         self._blank: _Odd | None = None
+        self._short: _Odd | None = None
         self._crossing: _Odd | None = None
 
     def rows(self, declared: int | None, said: list[str]) -> Float[np.ndarray, "rows width"]:
@@ -57,12 +58,14 @@ class NumberScan:
         rows, extra = divmod(len(values), self.width) if self.width else (0, len(values))
         crossing = self._crossing
         if self.width and crossing is not None and (extra or rows != declared):
-            missing = self.width - crossing.before % self.width
+            wanted, odd = self.width - crossing.before % self.width, crossing
+            if self._short is not None and self._short.before + self._short.count == odd.before:
+                wanted, odd = self.width, self._short
             raise FileFormatError(
                 self.path,
-                f"{crossing.count} values where {missing} were expected: each of the {self.what} "
-                f"has {self.width}",
-                line=crossing.line,
+                f"{odd.count} values where {wanted} were expected: each of the {self.what} has "
+                f"{self.width}",
+                line=odd.line,
             )
         if extra or rows < (declared or 0):
             says = "" if declared is None else f"declares {declared} {self.what}, but "
@@ -123,7 +126,7 @@ class NumberScan:
         raise AssertionError("a refused chunk holds something to refuse")
 
     def _note_lines(self, chunk: bytes) -> None:
-        """Which lines are blank and which hold the end of one row and the start of another."""
+        """Which lines are blank, which are short of a row, which go on into the next row."""
         text = np.frombuffer(chunk, np.uint8)
         space = (text == 32) | ((text >= 9) & (text <= 13))
         starts = ~space
@@ -136,6 +139,9 @@ class NumberScan:
             self._blank = self._odd(int((after == before).argmax()), before, after)
         if self._crossing is None and self.width:
             crossing = (after > before) & ((after - 1) // self.width != before // self.width)
+            short = (before % self.width == 0) & (after > before) & (after < before + self.width)
+            if self._short is None and short.any():
+                self._short = self._odd(int(short.argmax()), before, after)
             if crossing.any():
                 self._crossing = self._odd(int(crossing.argmax()), before, after)
         self._total += int(counts[-1]) if len(counts) else 0

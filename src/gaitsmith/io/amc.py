@@ -62,7 +62,7 @@ def read_amc(
         If one cannot be opened.
     """
     skeleton_file = read_asf(_beside(path) if asf is None else asf)
-    values = _values(path, skeleton_file)
+    values, degrees = _frames(path, skeleton_file)
     if fps is None:
         fps = CMU_RATE
         warnings.warn(
@@ -71,7 +71,7 @@ def read_amc(
             stacklevel=2,
         )
     factor = _factor(skeleton_file, path, unit)
-    root, rotations = _poses(skeleton_file, values, factor)
+    root, rotations = _poses(skeleton_file, values, factor, degrees)
     return Motion(
         skeleton=_skeleton(skeleton_file, factor),
         root_position=root,
@@ -95,47 +95,77 @@ def _beside(path: Path) -> Path:
     raise FileFormatError(path, f"an .amc needs its skeleton: there is no {wanted} beside it")
 
 
-def _values(path: Path, skeleton: Asf) -> Float[np.ndarray, "frames channels"]:
-    """All numbers, bone by bone in the skeleton's order."""
-    lines, widths = Lines(path), {bone.name: len(bone.dofs) for bone in skeleton.bones}
-    starts = dict(zip(widths, np.cumsum([0, *widths.values()]).tolist(), strict=False))
-    width = sum(widths.values())
-    numbers, row, filled = array("d"), [0.0] * width, 0
-    frames, seen = 0, set[str]()
+class _Frames:
+    """Numbers frame by frame, bone by bone in the skeleton's order."""
+
+    def __init__(self, lines: Lines, skeleton: Asf) -> None:
+        self.lines, self.degrees = lines, skeleton.degrees
+        self.widths = {bone.name: len(bone.dofs) for bone in skeleton.bones}
+        stops = np.cumsum([0, *self.widths.values()]).tolist()
+        self.starts = dict(zip(self.widths, stops, strict=False))
+        self.width = stops[-1]
+        self.count = 0
+        self._numbers = array("d")
+        self._row = [0.0] * self.width
+        self._seen: set[str] = set()
+
+    def begin(self) -> None:
+        """A line that holds the number of the frame."""
+        self.end()
+        self.count += 1
+        if self.count * len(self.widths) > max(_FREE_POSES, 8 * self.count * self.width):
+            self.lines.fail(
+                f"{len(self.widths)} bones with {self.width} values a frame are no figure"
+            )
+
+    def bone(self, name: str, words: list[str]) -> None:
+        """A line that holds a bone's values."""
+        if name not in self.widths or name in self._seen or self.count == 0:
+            what = "outside of the frames" if self.count == 0 else "no bone of its skeleton"
+            self.lines.fail(f"{name[:40]!r} is {'twice here' if name in self._seen else what}")
+        if len(words) != self.widths[name]:
+            self.lines.fail(f"{name[:40]!r} has {self.widths[name]} values, here are {len(words)}")
+        self._seen.add(name)
+        start = self.starts[name]
+        self._row[start : start + len(words)] = [self.lines.value(w, name) for w in words]
+
+    def end(self) -> None:
+        """Keep the frame, which must be complete."""
+        if self.count == 0:
+            return
+        missing = [name for name, w in self.widths.items() if w and name not in self._seen]
+        if missing:
+            self.lines.fail(f"frame {self.count} has no values of {missing[0][:40]!r}")
+        self._numbers.extend(self._row)
+        self._seen.clear()
+
+    def values(self) -> Float[np.ndarray, "frames channels"]:
+        """All of them."""
+        if self.count == 0:
+            self.lines.fail("this is no Acclaim motion: it has no frames")
+        values = np.array(self._numbers).reshape(self.count, self.width)
+        if np.abs(values).max(initial=0.0) > _LARGEST:
+            self.lines.fail(f"a value beyond {_LARGEST:g} is no figure's")
+        return values
+
+
+def _frames(path: Path, skeleton: Asf) -> tuple[Float[np.ndarray, "frames channels"], bool]:
+    """All values, and whether angles are degrees."""
+    lines = Lines(path)
+    frames = _Frames(lines, skeleton)
     while (line := lines.next()) is not None:
         words = line.split("#")[0].split()
-        if not words or words[0].startswith(":"):
-            if words and words[0].upper() in (":DEGREES", ":RADIANS"):
-                degrees = words[0].upper() == ":DEGREES"
+        if not words:
             continue
-        if len(words) == 1 and words[0].isdigit():
-            if frames and filled != width:
-                lines.fail(f"the frame before has {filled} of {width} values")
-            if frames:
-                numbers.extend(row)
-            frames, filled = frames + 1, 0
-            seen.clear()
-            if frames * len(widths) > max(_FREE_POSES, 8 * (len(numbers) + width)):
-                lines.fail(f"{len(widths)} bones with {width} values a frame are no figure")
-            continue
-        name, count = words[0], len(words) - 1
-        if frames == 0 or name not in widths or name in seen:
-            what = "twice in a frame" if name in seen else "no bone of its skeleton"
-            lines.fail(f"{name[:40]!r} is {what if frames else 'outside of the frames'}")
-        seen.add(name)
-        if count != widths[name]:
-            lines.fail(f"{name[:40]!r} has {widths[name]} values, here are {count}")
-        row[starts[name] : starts[name] + count] = [lines.value(w, name) for w in words[1:]]
-        filled += count
-    if frames == 0:
-        lines.fail("this is no Acclaim motion: it has no frames")
-    if filled != width:
-        lines.fail(f"the last frame has {filled} of {width} values")
-    numbers.extend(row)
-    values = np.array(numbers).reshape(frames, width)
-    if np.abs(values).max(initial=0.0) > _LARGEST:
-        lines.fail(f"a value beyond {_LARGEST:g} is no figure's")
-    return values
+        if words[0].startswith(":"):
+            if words[0].upper() in (":DEGREES", ":RADIANS"):
+                frames.degrees = words[0].upper() == ":DEGREES"
+        elif len(words) == 1 and words[0].isdigit():
+            frames.begin()
+        else:
+            frames.bone(words[0], words[1:])
+    frames.end()
+    return frames.values(), frames.degrees
 
 
 def _turns(
@@ -150,14 +180,14 @@ def _turns(
 
 
 def _poses(
-    skeleton: Asf, values: Float[np.ndarray, "frames channels"], factor: float
+    skeleton: Asf, values: Float[np.ndarray, "frames channels"], factor: float, degrees: bool
 ) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames joints 4"]]:
     root = np.zeros((len(values), 3))
     rotations = np.empty((len(values), len(skeleton.bones), 4))
     column = 0
     for joint, bone in enumerate(skeleton.bones):
         here = values[:, column : column + len(bone.dofs)]
-        rotations[:, joint] = _turns(bone, here, skeleton.degrees)
+        rotations[:, joint] = _turns(bone, here, degrees)
         column += len(bone.dofs)
         for dof, value in zip(bone.dofs, here.T, strict=True):
             if dof.startswith("t"):

@@ -43,22 +43,26 @@ def markers(
     if len(positions) == 0 or not names:
         raise FileFormatError(path, "no marker in any frame")
     bad: Bool[np.ndarray, "frames markers"] = np.any(np.isnan(positions), axis=-1, keepdims=False)
-    left_out: list[str] = []
+    filled, left_out = list[str](), list[str]()
     kept: list[int] = []
     for marker, name in enumerate(names):
         gaps = _gaps(bad[:, marker])
         if all(a > 0 and b < len(bad) and (b - a) <= LONGEST_GAP * rate for a, b in gaps):
             kept.append(marker)
             if gaps:
-                _say(f"{path}: {_spoken(name, gaps)} filled with straight lines")
+                filled.append(_spoken(name, gaps))
                 _fill(positions[:, marker], bad[:, marker])
         else:
             left_out.append(_spoken(name, gaps))
-    if left_out:
-        more = f" and {len(left_out) - 3} more" if len(left_out) > 3 else ""
-        _say(f"{path}: left out for their gaps: {'; '.join(left_out[:3])}{more}")
     if not kept:
         raise FileFormatError(path, f"every marker has gaps over {LONGEST_GAP} s: {left_out[0]}")
+    for what, which in (
+        ("gaps filled with straight lines", filled),
+        ("left out for their gaps", left_out),
+    ):
+        if which:
+            more = f" and {len(which) - 5} more" if len(which) > 5 else ""
+            _say(f"{path}: {what}: {'; '.join(which[:5])}{more}")
     return Markers(tuple(names[i] for i in kept), positions[:, kept], rate)
 
 
@@ -85,21 +89,24 @@ def _fill(path: Float[np.ndarray, "frames 3"], bad: Bool[np.ndarray, "frames"]) 
 
 
 def up_is_z(positions: Float[np.ndarray, "frames markers 3"]) -> bool:
-    """Whether the lowest marker clearly stays on the floor z = 0 and not on y = 0.
+    """Whether the person clearly stands on the floor z = 0.
 
-    Clearly: over the middle nine tenths of the clip the lowest z keeps within 6 cm of one
-    height near zero, the markers are higher than that along z, and y does neither.
+    Clearly: nine tenths of the time the lowest marker keeps within 6 cm of one height near
+    z = 0, and the markers span a third more along z than along y.
     """
     if positions.shape[1] < 2 or len(positions) < 2:
         return False
-    lows = np.where(np.isnan(positions), np.inf, positions).min(axis=1)
-    lows = lows[np.isfinite(lows).all(axis=-1)]
-    if len(lows) == 0:
+    missing = np.isnan(positions)
+    low = np.where(missing, np.inf, positions).min(axis=1)
+    high = np.where(missing, -np.inf, positions).max(axis=1)
+    whole = np.isfinite(low).all(axis=-1)
+    if not whole.any():
         return False
-    lowest = np.quantile(lows, [0.05, 0.5, 0.95], axis=0)
-    spread, level = lowest[2] - lowest[0], lowest[1]
-    on_floor = (spread < 0.06) & (np.abs(level) < 0.2)
-    return bool(on_floor[2] and not on_floor[1] and spread[1] > 0.2)
+    lowest = np.quantile(low[whole, 2], [0.05, 0.5, 0.95])
+    span = np.median(high[whole] - low[whole], axis=0)
+    return bool(
+        lowest[2] - lowest[0] < 0.06 and abs(lowest[1]) < 0.2 and span[2] > 1.3 * span[1] + 0.2
+    )
 
 
 def y_up(

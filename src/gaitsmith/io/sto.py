@@ -7,8 +7,6 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from gaitsmith._checks import frozen_array
 from gaitsmith.errors import (
     FileFormatError,
@@ -21,6 +19,7 @@ from gaitsmith.io._numbers import NumberScan
 if TYPE_CHECKING:
     from pathlib import Path
 
+    import numpy as np
     from jaxtyping import Float
 
 _MOST_HEADER_LINES = 1000

@@ -104,14 +104,19 @@ def _gait(
 
 
 def step_lengths(labels: Labels) -> Float[np.ndarray, "steps"]:
-    """Distance of each footstep beyond the one before it, along the direction of the walk.
+    """Distance of each footstep beyond the foot it swings past, along the direction of the walk.
 
     The direction at a step is that of the mean heading of its two feet, so that toe-out and
     step width do not count.
     """
     position, heading = labels.footstep_position, labels.footstep_heading
-    mean = 0.5 * (heading[1:-1] + heading[2:])
-    gap = position[2:] - position[1:-1]
+    stance, stands = [], {int(labels.footstep_side[i]): i for i in (0, 1)}
+    for i in range(2, len(position)):
+        side = int(labels.footstep_side[i])
+        stance.append(stands.get(1 - side, i - 1))
+        stands[side] = i
+    mean = 0.5 * (heading[stance] + heading[2:])
+    gap = position[2:] - position[stance]
     return gap[:, 0] * np.sin(mean) + gap[:, 2] * np.cos(mean)
 
 

@@ -60,7 +60,7 @@ _NECK = ("neck", "lowerneck", "necklower", "upperneck", "neckupper")
 _SPINE_ROLES = {1: ("spine",), 2: ("spine", "chest"), 3: ("spine", "chest", "upperChest")}
 #: What programs put before or behind a name.
 _PREFIXES = {
-    *("mixamorig", "bip", "biped", "valvebiped", "character", "cc", "base", "j", "jnt"),
+    *("mixamorig", "bip", "biped", "valve", "character", "cc", "base", "j", "jnt"),
     *("joint", "def", "org", "bone", "rig", "skeleton", "armature", "skel", "bind", "c", "b"),
 }
 _SUFFIXES = {"joint", "jnt", "bone", "bind", "def"}

@@ -64,6 +64,9 @@ class PlannedStep:
 class StepPlan:
     """N footsteps in order of landing; the first two are where the feet stand at time 0.
 
+    Of those two the rear one comes first, or the left one where they stand side by side. From
+    the third on, sides alternate.
+
     Attributes
     ----------
     side, position, heading, direction, time
@@ -103,7 +106,11 @@ class StepPlan:
             )
         if not np.isin(self.side, (0, 1)).all():
             raise InvalidInputError("side must be 0 (left) or 1 (right) for every footstep")
-        same = np.flatnonzero(self.side[1:] == self.side[:-1])
+        if self.side[0] == self.side[1]:
+            raise InvalidInputError(
+                f"the initial feet must be a left and a right one, both are {SIDES[self.side[0]]}"
+            )
+        same = np.flatnonzero(self.side[3:] == self.side[2:-1]) + 2
         if same.size:
             i = int(same[0])
             raise InvalidInputError(
@@ -130,16 +137,23 @@ class StepPlan:
     def steps(self) -> list[PlannedStep]:
         """Every step, in order."""
         feet = [self.footstep(i) for i in range(len(self.side))]
-        return [
-            PlannedStep(
-                index=i,
-                kind=kind,
-                stance=feet[i + 1],
-                origin=feet[i],
-                target=feet[i + 2],
-                before=feet[i - 1] if i > 0 else None,
-                following=feet[i + 3] if i + 3 < len(feet) else None,
-                duration=feet[i + 2].time - feet[i + 1].time,
+        stands = {foot.side: foot for foot in feet[:2]}
+        came_from: dict[int, Footstep] = {}
+        out = []
+        for i, kind in enumerate(self.kinds):
+            target = feet[i + 2]
+            origin, stance = stands[target.side], stands[1 - target.side]
+            out.append(
+                PlannedStep(
+                    index=i,
+                    kind=kind,
+                    stance=stance,
+                    origin=origin,
+                    target=target,
+                    before=came_from.get(stance.side),
+                    following=feet[i + 3] if i + 3 < len(feet) else None,
+                    duration=target.time - feet[i + 1].time,
+                )
             )
-            for i, kind in enumerate(self.kinds)
-        ]
+            came_from[target.side], stands[target.side] = origin, target
+        return out

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith._checks import number, one_of, positive
-from gaitsmith.conventions import RIGHT, SIDE_SIGN, ahead, leftward
-from gaitsmith.errors import InvalidInputError
+from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, ahead, leftward
+from gaitsmith.errors import InfeasibleError, InvalidInputError
 from gaitsmith.plan.footsteps import StepPlan
 
 if TYPE_CHECKING:
@@ -29,6 +29,8 @@ EASED_DURATION = 1.5
 SHARES = (1.0 / 6.0, 2.0 / 6.0, 3.0 / 6.0)
 #: Part of a step that those three give up together, at least: nobody stops from full steps.
 LEAST_DEFICIT = 0.2
+#: Steps that one plan may have.
+MOST_STEPS = 100_000
 #: Path samples, meters apart.
 PATH_SPACING = 0.02
 
@@ -54,7 +56,7 @@ def stride_lengths(distance: float, length: float, start: str, stop: str) -> lis
     if stop == "walk":
         count = int(np.floor(rest / length + 1e-9))
         if not head and count == 0:
-            raise InvalidInputError(
+            raise InfeasibleError(
                 f"distance {distance:g} m holds no step of {length:.3f} m; with stop='walk' at "
                 "least one must fit"
             )
@@ -103,6 +105,11 @@ def plan_straight(
         Where the path begins, x,z, and which way it goes.
     """
     distance = positive("distance", distance, "meters")
+    if distance / pace.step_length > MOST_STEPS:
+        raise InvalidInputError(
+            f"distance {distance:g} m takes more than {MOST_STEPS} steps of {pace.step_length:.3f} "
+            "m; walk it in parts"
+        )
     one_of("start", start, ("stand", "walk"))
     one_of("stop", stop, ("stand", "walk"))
     number("heading", heading, "radians")
@@ -119,8 +126,10 @@ def plan_straight(
         along = np.concatenate([along, along[-1:]])
     eased = np.array([EASED_DURATION if kind != "walk" else 1.0 for kind in kinds])
     time = np.concatenate([[0.0, 0.0], np.cumsum(eased * pace.step_duration)])
-    # the first to land is the right one; standing, the left one is listed first
-    side = (np.arange(len(along)) + RIGHT) % 2
+    # the first to land is the right one; so mid-walk it is the rear one
+    side = np.arange(len(along)) % 2
+    side[2:] = 1 - side[2:]
+    side[:2] = [LEFT, RIGHT] if start == "stand" else [RIGHT, LEFT]
     position = footstep_positions(along, side, stance, origin, heading, ground)
     # mid-walk the hips are still behind the first point: the path begins at the rear foot
     first = float(min(along[0], 0.0))

@@ -73,8 +73,10 @@ class Cage:
         Int[np.ndarray, "faces"],
     ]:
         """Subdivided once: points, weights, quads and their paint."""
-        table = np.concatenate([np.array(self.points), np.array(self.weights)], axis=1)
-        table, quads, parent = subdivide(table, np.array(self.faces))
+        table, faces = np.concatenate([self.points, self.weights], axis=1), np.array(self.faces)
+        used = np.unique(faces[faces >= 0])  # all but what lies in the holes for the arms
+        faces = np.where(faces < 0, -1, np.searchsorted(used, faces))
+        table, quads, parent = subdivide(table[used], faces)
         return table[:, :3], table[:, 3:], quads, np.array(self.paints)[parent]
 
 

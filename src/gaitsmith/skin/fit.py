@@ -8,7 +8,7 @@ import numpy as np
 
 from gaitsmith.conventions import SIDES
 from gaitsmith.geometry.curves import smoothstep
-from gaitsmith.skin.parts import ADULT, HEAD_JOINT
+from gaitsmith.skin.parts import HEAD_JOINT
 from gaitsmith.skin.sculpt import Sculpt
 from gaitsmith.skin.trunk import spine_chain
 

@@ -50,9 +50,10 @@ class Clock:
                 joint[i + 1] = 0.0
                 if i > 0 and plan.kinds[i - 1] == "walk":
                     joint[i] = speed[i - 1]
+        # beyond 3 times the even rate, on either side, a cubic would run backwards
+        slowest = np.minimum(np.append(speed, speed[-1]), np.insert(speed, 0, speed[0]))
+        joint = np.minimum(joint, 3.0 * slowest)
         rates = np.stack([joint[:-1] * durations, joint[1:] * durations], axis=-1)
-        # beyond 3 a cubic would run backwards
-        rates = np.minimum(rates, 3.0)
         return Clock(np.concatenate([[0.0], np.cumsum(durations)]), rates, rest)
 
     @property

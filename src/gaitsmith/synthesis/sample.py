@@ -11,9 +11,10 @@ from gaitsmith._checks import positive
 from gaitsmith.body.rig import skeleton_of
 from gaitsmith.contact.apply import local_legs
 from gaitsmith.conventions import SIDES
+from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import exp, sign_continuous
 from gaitsmith.motion.motion import Labels, Motion
-from gaitsmith.synthesis.upper_body import upper_joints
+from gaitsmith.synthesis.overlay import upper_joints
 
 if TYPE_CHECKING:
     from typing import Any
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
     from gaitsmith.body.body import Body
     from gaitsmith.ground import Ground
     from gaitsmith.synthesis.step import PreparedWalk
+
+
+#: Frames that one motion may have: about 5 GB of work space.
+MOST_FRAMES = 1_000_000
 
 
 def sample_walk(
@@ -32,6 +37,11 @@ def sample_walk(
     evaluated for all frames at once.
     """
     fps = positive("fps", fps, "frames per second")
+    if walk.duration * fps > MOST_FRAMES:
+        raise InvalidInputError(
+            f"{walk.duration:.0f} s at {fps:g} frames per second are more than {MOST_FRAMES} "
+            "frames; walk it in parts or lower fps"
+        )
     frames = int(np.floor(walk.duration * fps + 1e-6)) + 1
     times = np.arange(frames) / fps
     poses = walk.poses(np.minimum(times, walk.duration))

@@ -12,13 +12,14 @@ from gaitsmith.contact import ReferenceStep, StepCurves
 from gaitsmith.conventions import UP, ahead, leftward
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
-from gaitsmith.synthesis.upper_body import Manner, Overlay, rule_overlay
+from gaitsmith.synthesis.upper_body import RuleOverlay
 from gaitsmith.walks.model import SagittalStep, StepRequest, StraightWalk
 
 if TYPE_CHECKING:
     from gaitsmith.body.body import Body
     from gaitsmith.ground import Ground
     from gaitsmith.plan.footsteps import Footstep, PlannedStep
+    from gaitsmith.synthesis.overlay import Overlay, Overlayer
 
 #: Footsteps farther than this from one line, meters or radians, are not a straight walk.
 STRAIGHT = 1e-9
@@ -75,8 +76,8 @@ class StraightGenerator:
         Gives hips and feet in the sagittal plane.
     ground
         Where the footsteps lie.
-    manner
-        The rules above the legs.
+    overlay
+        Pelvis, trunk, head and arms; None: the rules of :mod:`gaitsmith.synthesis.upper_body`.
 
     Notes
     -----
@@ -84,8 +85,10 @@ class StraightGenerator:
     same poses.
     """
 
-    def __init__(self, walk: StraightWalk, ground: Ground, manner: Manner | None = None) -> None:
-        self._walk, self._ground, self._manner = walk, ground, manner or Manner()
+    def __init__(
+        self, walk: StraightWalk, ground: Ground, overlay: Overlayer | None = None
+    ) -> None:
+        self._walk, self._ground, self._overlay = walk, ground, overlay or RuleOverlay()
         self._drawn = lru_cache(maxsize=512)(self._draw)
 
     def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
@@ -130,7 +133,7 @@ class StraightGenerator:
         self, body: Body, request: StepRequest, setting: _Setting
     ) -> tuple[SagittalStep, StepCurves]:
         sagittal = self._walk.step(body, request)
-        overlay = rule_overlay(body, request, sagittal, self._manner)
+        overlay = self._overlay(body, request, sagittal)
         return sagittal, _curves(request.side, sagittal, overlay, setting)
 
 

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.body.rig import spine_names
-from gaitsmith.conventions import SIDE_SIGN, SIDES
+from gaitsmith.conventions import SIDE_SIGN
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.rotations import about, exp, inverse, log, multiply
+from gaitsmith.synthesis.overlay import Overlay
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -76,34 +76,15 @@ class Manner:
     arms: bool = True
 
 
-@dataclass(frozen=True, eq=False)
-class Overlay:
-    """What is laid over a sagittal step, relative to the heading.
+class RuleOverlay:
+    """The rules as an :class:`~gaitsmith.synthesis.overlay.Overlayer`."""
 
-    Attributes
-    ----------
-    sway
-        ``(T,)`` the hips to the left, meters.
-    pelvis
-        ``(T, 3)`` rotation vector of the pelvis in the heading's frame.
-    upper
-        ``(T, U, 3)`` local rotation vectors, in the order of :func:`upper_joints`.
-    """
+    def __init__(self, manner: Manner | None = None) -> None:
+        self._manner = manner or Manner()
 
-    sway: Float[np.ndarray, "T"]
-    pelvis: Float[np.ndarray, "T 3"]
-    upper: Float[np.ndarray, "T U 3"]
-
-
-def upper_joints(body: Body) -> tuple[str, ...]:
-    """Names of the joints above the pelvis, in the order of ``Overlay.upper``."""
-    arms = ("Shoulder", "UpperArm", "LowerArm", "Hand")
-    return (
-        *spine_names(body.spine_segments),
-        "neck",
-        "head",
-        *(f"{side}{part}" for side in SIDES for part in arms),
-    )
+    def __call__(self, body: Body, request: StepRequest, step: SagittalStep) -> Overlay:
+        """See :func:`rule_overlay`."""
+        return rule_overlay(body, request, step, self._manner)
 
 
 def rule_overlay(body: Body, request: StepRequest, step: SagittalStep, manner: Manner) -> Overlay:
@@ -123,7 +104,8 @@ def rule_overlay(body: Body, request: StepRequest, step: SagittalStep, manner: M
     # antiperiodic in the step: what one side does now the other does in the next
     turn = -s * (e0 - (e0 + e1) * 0.5 * (1.0 - np.cos(np.pi * p)))
     tip = s * envelope * np.sin(np.pi * p) * (1.0 + 0.5 * np.sin(2.0 * np.pi * p))
-    sway = s * manner.sway * body.hip_width * _sway(p, request.kind, e0, e1)
+    reach = s * manner.sway * body.hip_width
+    sway = shifted_sway(p, request, reach * np.sin(np.pi * (p - 0.06)), e0, e1, abs(reach))
     pelvis = on * np.stack(
         [manner.pelvis_tilt * envelope, manner.pelvis_rotation * turn, manner.pelvis_list * tip],
         axis=-1,
@@ -150,19 +132,26 @@ def rule_overlay(body: Body, request: StepRequest, step: SagittalStep, manner: M
     return Overlay(sway=on * sway, pelvis=pelvis, upper=upper)
 
 
-def _sway(p: Float[np.ndarray, "T"], kind: str, e0: float, e1: float) -> Float[np.ndarray, "T"]:
-    """Lateral path of the hips towards the stance foot; 1 is the steady amplitude.
+def shifted_sway(
+    p: Float[np.ndarray, "T"],
+    request: StepRequest,
+    steady: Float[np.ndarray, "T"],
+    e0: float,
+    e1: float,
+    reach: float,
+) -> Float[np.ndarray, "T"]:
+    """Lateral path of the hips of one step, meters to the left, from that of a steady walk.
 
-    Nearly the same at all step lengths. Before the first foot can leave the ground the weight
-    must be over the other one, so a start shifts early and far (human-facts G1, G4).
+    Nearly the same at all step lengths ``e0`` (before) and ``e1`` (this), over the usual one.
+    Before the first foot can leave the ground the weight must be over the other one, so a
+    start shifts early and far, ``reach`` meters (human-facts: Yiou 2016, 2017).
     """
 
     def size(e: float) -> float:
         return float(np.tanh(3.0 * e))
 
-    steady = np.sin(np.pi * (p - 0.06))
-    if kind == "start":
-        shift = 1.1 * size(e1) * smoothstep(p / 0.30)
+    if request.kind == "start":
+        shift = float(SIDE_SIGN[request.side]) * 1.1 * reach * size(e1) * smoothstep(p / 0.30)
         later = smoothstep((p - 0.30) / 0.60)
         return (1.0 - later) * shift + later * size(e1) * steady
     return (size(e0) + (size(e1) - size(e0)) * smoothstep(p)) * steady

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.body.body import Body, Foot
-from gaitsmith.body.sole import roll
+from gaitsmith.body.sole import roll, rolled_ankle
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.signals import butterworth_zero_lag
 from gaitsmith.motion.motion import Markers
 from gaitsmith.walks.data import Character, TimedSequence, WalkData
-from gaitsmith.walks.generalize import generalize
+from gaitsmith.walks.generalize import affine, ankle_at_heel_strike, generalize, hip_height
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 #: Markers that extraction reads. The ball is the fifth metatarsal.
 MARKERS = ("hip", "knee", "ankle", "heel", "ball", "toe")
 #: Straightest knee at heel strike: with marker data the hip-ankle distance can exceed the leg.
-STRAIGHTEST_KNEE = np.radians(172.0)
+STRAIGHTEST_KNEE = float(np.radians(172.0))
 FLAT_PHASES = (0.25, 0.60)
 
 
@@ -52,7 +52,14 @@ def read_winter_table(path: Path) -> Markers:
     return Markers(MARKERS, positions, (len(time) - 1) / (time[-1] - time[0]))
 
 
-def extract(markers: Markers, body: Body, *, cutoff: float = 6.0) -> Extraction:
+def extract(
+    markers: Markers,
+    body: Body,
+    *,
+    cutoff: float | None = 6.0,
+    events: tuple[int, int, int] | None = None,
+    center: bool = False,
+) -> Extraction:
     """Six timed sequences from markers of one leg over one stride.
 
     Parameters
@@ -64,7 +71,13 @@ def extract(markers: Markers, body: Body, *, cutoff: float = 6.0) -> Extraction:
         Whose legs these are: gives the leg length, which markers on the skin do not. Its foot
         is replaced by the one measured here.
     cutoff
-        Low-pass, Hz.
+        Low-pass, Hz; None where the paths are smooth already.
+    events
+        Frames of two heel strikes of the leg and of the toe-off between them, where they are
+        known; None: found in the paths.
+    center
+        Whether ``hip`` is the middle of both hips, known exactly, and not a marker on the skin
+        of one side: then the legs keep their measured length through the stance.
 
     Returns
     -------
@@ -82,11 +95,13 @@ def extract(markers: Markers, body: Body, *, cutoff: float = 6.0) -> Extraction:
     the markers on the skin, not of the floor, and both are removed.
     """
     rate = markers.rate
-    paths = {
-        name: butterworth_zero_lag(markers[name][:, [2, 1]], cutoff=cutoff, rate=rate)
-        for name in MARKERS
-    }
-    first, last, off = _events(paths, rate)
+    paths = {name: markers[name][:, [2, 1]] for name in MARKERS}
+    if cutoff is not None:
+        paths = {
+            name: butterworth_zero_lag(path, cutoff=cutoff, rate=rate)
+            for name, path in paths.items()
+        }
+    first, last, off = _events(paths, rate) if events is None else events
     frames_per_step = 0.5 * (last - first)
     phase = (np.arange(len(markers.positions)) - first) / frames_per_step
     flat = (phase >= FLAT_PHASES[0]) & (phase <= FLAT_PHASES[1])
@@ -105,11 +120,17 @@ def extract(markers: Markers, body: Body, *, cutoff: float = 6.0) -> Extraction:
     foot2 = _heel_rise(phase, pitch, level, heel_off, 1.0 + toe_off)
     hip = _mean_hip(phase, paths["hip"] - [here, floor], length)
     measured = _read(phase, paths["ankle"][:, 1] - floor, hip.times)
-    hip = _as_far_from_the_ankle(hip, measured, foot, foot1, foot2)
-    kappa = float(0.5 * (-hip.values[0, 0] + length - hip.values[-1, 0]) / length)
+    if not center:
+        hip = _as_far_from_the_ankle(hip, measured, foot, foot1, foot2)
     swing = _between(phase, 1.0 + toe_off, 2.0)
     ankle = _read(phase, paths["ankle"], swing) - [here + length, floor]
     strike_ankle = ankle[-1] - hip.values[-1]
+    kappa = float(0.5 * (-hip.values[0, 0] + length - hip.values[-1, 0]) / length)
+    if center:
+        # The leg at heel strike as measured, on a foot that will not move any more: a living
+        # heel still rolls and slides forward by some centimeters until the foot is flat.
+        rocker = ankle_at_heel_strike(foot, 0.0, float(pitch[first]))[0]
+        kappa = float((strike_ankle[0] - rocker) / length)
     character = Character(
         ratio=length / body.leg_length,
         knee=_interior_knee(body, float(np.hypot(*strike_ankle))),
@@ -134,6 +155,9 @@ def extract(markers: Markers, body: Body, *, cutoff: float = 6.0) -> Extraction:
         meta=_toe_rise(phase, meta, meta_off, 1.0 + toe_off),
         ankle=TimedSequence(swing - 1.0, ankle),
     )
+    if center:
+        reach = np.linalg.norm(_read(phase, paths["hip"] - paths["ankle"], hip.times), axis=-1)
+        walk = walk.with_(hip=_with_measured_legs(walk, reach))
     # the identity generalization makes all ends agree with the mu functions
     walk = generalize(walk, walk.body, length, length)
     return Extraction(walk, (first, last), off, frames_per_step / rate)
@@ -261,6 +285,22 @@ def _as_far_from_the_ankle(
     values = np.array(hip.values)
     values[:, 1] += fade * (modelled - measured)
     return hip.with_values(values)
+
+
+def _with_measured_legs(walk: WalkData, reach: Float[np.ndarray, "n"]) -> TimedSequence:
+    """Hip path so high that the stance leg is as long as measured, on the rigid foot.
+
+    Heel strikes determine the ends, where both legs are at their limit; the path eases into
+    them over a quarter of the step.
+    """
+    t, c, length = walk.hip.times, walk.character, walk.length
+    pitch = np.where(t < walk.flat, walk.foot1.at(t)[:, 0], walk.foot2.at(t)[:, 0])
+    ankle = rolled_ankle(walk.body.foot, pitch, 0.0)
+    forward = affine(walk.hip.values[:, 0], -c.kappa * length, (1.0 - c.kappa) * length)
+    up = ankle[:, 1] + np.sqrt(np.maximum(reach**2 - (forward - ankle[:, 0]) ** 2, 0.0))
+    ends = hip_height(c, walk.body, length)
+    fade = smoothstep(t / 0.25) * smoothstep((1.0 - t) / 0.20)
+    return walk.hip.with_values(np.stack([forward, ends + fade * (up - ends)], axis=-1))
 
 
 def _interior_knee(body: Body, distance: float) -> float:

@@ -1,0 +1,153 @@
+"""What the fuzzers share: small good files of every format, and one run of a reader.
+
+A reader may give a result or say that the file is broken; nothing else, and not slowly.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from gaitsmith.errors import FileFormatError, GaitsmithWarning, InvalidInputError
+from gaitsmith.io import MARKER_READERS, READERS, TABLE_READERS
+from gaitsmith.io.bvh_parse import parse_bvh
+from gaitsmith.io.bvh_print import write_bvh_file
+
+BVH = b"""HIERARCHY
+ROOT Hips
+{
+\tOFFSET 0.0 90.0 0.0
+\tCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+\tJOINT LeftUpLeg
+\t{
+\t\tOFFSET 9.0 -3.0 0.0
+\t\tCHANNELS 3 Zrotation Xrotation Yrotation
+\t\tJOINT LeftLeg {
+\t\t\tOFFSET 0 -4e1 0
+\t\t\tCHANNELS 6 Zrotation Xposition Yposition Zposition Xrotation Yrotation
+\t\t\tEnd Site
+\t\t\t{
+\t\t\t\tOFFSET 0.0 -40.0 1.0
+\t\t\t}
+\t\t}
+\t}
+}
+MOTION
+Frames: 2
+Frame Time: 0.0333333
+1 90 2 10 20 30 -5 6 7 1 0 -40 0 2 3
+1.5 91 2.5 11 21 31 -6 7 8 1.25 0 -40 0 2.5 3.5
+"""
+ASF = b""":units
+  length 0.45
+  angle deg
+:root
+  order TX TY TZ RX RY RZ
+  axis XYZ
+:bonedata
+  begin
+    name lfemur
+    direction 0 -1 0
+    length 7.5
+    axis 0 0 20 XYZ
+    dof rx ry rz
+    limits (-160.0 20.0)
+  end
+  begin
+    name ltibia
+    direction 0 -1 0
+    length 7
+    axis 0 0 20 XYZ
+    dof rx
+  end
+:hierarchy
+  begin
+    root lfemur
+    lfemur ltibia
+  end
+"""
+AMC = b""":DEGREES
+1
+root 1 2 3 10 20 30
+lfemur -20 5 7
+ltibia 40
+2
+root 1.5 2 3 11 20 30
+lfemur -21 5 7
+ltibia 41
+"""
+TRC = (
+    b"PathFileType\t4\t(X/Y/Z)\ta.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n100\t3\t2\tmm\n"
+    b"Frame#\tTime\tHeel\t\t\tToe\t\t\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n\n"
+    b"1\t0.00\t1\t2\t3\t4\t5\t6\n2\t0.01\t1\t2\t3\t\t\t\n3\t0.02\t1\t2\t3\t4\t5\t6\n"
+)
+CSV = b"time,hip_x,hip_y,toe_x,toe_y\n0,0,0.9,0,0\n0.1,0.1,0.9,,\n0.2,0.2,0.9,0.2,0\n"
+STO = (
+    b"Coordinates\ninDegrees=no\nnColumns=3\nnRows=3\nendheader\n"
+    b"time\thip\tknee\n0\t1\t2\n0.1\t2\t3\n0.2\t3\t4\n"
+)
+#: A good file of each suffix; an .asf is read with a good .amc beside it.
+SEEDS: dict[str, bytes] = {
+    ".bvh": BVH,
+    ".asf": ASF,
+    ".amc": AMC,
+    ".trc": TRC,
+    ".csv": CSV,
+    ".sto": STO,
+}
+#: Words that mean something to some reader: what mutations put in.
+WORDS: tuple[bytes, ...] = (
+    *(b"HIERARCHY", b"MOTION", b"JOINT x", b"ROOT y", b"End Site", b"OFFSET 0 0 0", b"{", b"}"),
+    *(b"CHANNELS 6 ", b"CHANNELS 0", b"Xposition", b"Frames: 1000000000", b"Frame Time: 0", b":"),
+    *(b"begin", b"end", b"dof rx", b"axis 1 2 3 ZYX", b"length 0", b":root", b":hierarchy", b"#"),
+    *(b"endheader", b"nRows=99999999999", b"time", b"_x", b"_z,", b",,", b"\t\t\t", b"\n\n\n"),
+    *(b"nan", b"inf", b"-1", b"1e308", b"1e-320", b"1_0", b"0x1", b"9" * 400, b"\x00", b"\xff"),
+    *(b"\r", b"\xef\xbb\xbf", b"\xff\xfe", b"\x1a", b'"', b" " * 70000, b"\xe2\x80\xa8"),
+)
+
+
+def try_to_read(suffix: str, data: bytes) -> bool:
+    """Read ``data`` as a file of ``suffix``; whether it was one. Raises what must not be."""
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.simplefilter("ignore", GaitsmithWarning)
+        path = Path(folder) / f"x{suffix}"
+        path.write_bytes(data)
+        if suffix == ".amc":
+            path.with_suffix(".asf").write_bytes(ASF)
+        if suffix == ".asf":
+            path = path.with_suffix(".amc")
+            path.write_bytes(AMC)
+        read = {**READERS, **MARKER_READERS, **TABLE_READERS}[path.suffix]
+        try:
+            result = read(path)
+        except FileFormatError as error:
+            assert len(str(error).splitlines()) == 1
+            return False
+        except InvalidInputError:
+            return False
+        _check(suffix, data, result, Path(folder) / "again.bvh")
+        return True
+
+
+def _check(suffix: str, data: bytes, result: object, path: Path) -> None:
+    """Numbers are finite, and a BVH survives being written."""
+    for field in ("root_position", "rotations", "positions", "values"):
+        assert np.isfinite(getattr(result, field, 0.0)).all()
+    if suffix != ".bvh":
+        return
+    file = parse_bvh(data)
+    write_bvh_file(file, path)
+    back = parse_bvh(path.read_bytes())
+    assert back.parents == file.parents
+    assert back.frame_time == file.frame_time
+    assert np.array_equal(back.offsets, file.offsets)
+    kept = [
+        column.start + i
+        for names, column in zip(file.channels, back.columns, strict=True)
+        for i in range(len(names))
+    ]
+    assert np.array_equal(back.values[:, kept], file.values)
