@@ -3,6 +3,7 @@
 
 PYTHON ?= python3
 JOBS ?= 2
+SECONDS ?= 60
 export NO_MKDOCS_2_WARNING = 1
 
 VENV := .venv
@@ -16,7 +17,7 @@ MADE := $(VENV)/.made
 CORE := $(VENV)/.core
 DEV := $(VENV)/.dev
 
-.PHONY: help venv demo test test-all check bench docs clean
+.PHONY: help venv demo test test-all check bench docs fuzz clean
 .DELETE_ON_ERROR:
 
 help:
@@ -24,6 +25,7 @@ help:
 	@echo 'make test      the fast tests and the examples in docstrings: under three minutes'
 	@echo 'make test-all  the slow tests too'
 	@echo 'make check     format, lint, types, import contract, docs, index of papers'
+	@echo 'make fuzz      broken files for the readers, SECONDS=60 of them; needs the network for atheris'
 	@echo 'make bench     speed, as ratios within one run'
 	@echo 'make docs      the index of papers and the site in site/'
 	@echo 'make venv      .venv with all that the above need'
@@ -71,6 +73,11 @@ check: $(DEV)
 	$(BIN)/lint-imports
 	$(PY) tools/paper_index.py --check
 	$(PY) -m mkdocs build --strict --quiet
+
+fuzz: $(DEV)
+	@$(PY) -c 'import atheris' 2>/dev/null || $(PIP) install --quiet atheris || \
+	  echo 'atheris cannot be installed here: mutations are random instead of guided'
+	$(PY) tests/fuzz/fuzz_readers.py --seconds $(SECONDS)
 
 bench: $(DEV)
 	$(PY) benchmarks/run.py

@@ -22,7 +22,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--crashes", type=Path, default=Path(".fuzz"))
+    parser.add_argument("--crashes", type=Path, default=Path("build/fuzz"))
     parser.add_argument("--plain", action="store_true", help="without atheris")
     options = parser.parse_args()
     try:

@@ -125,12 +125,14 @@ def try_to_read(suffix: str, data: bytes) -> bool:
         try:
             result = read(path)
         except FileFormatError as error:
-            assert len(str(error).splitlines()) == 1
-            return False
-        except InvalidInputError:
-            return False
-        _check(suffix, data, result, Path(folder) / "again.bvh")
-        return True
+            refused = str(error)
+        except InvalidInputError as error:
+            refused = str(error)
+        else:
+            _check(suffix, data, result, Path(folder) / "again.bvh")
+            return True
+        assert len(refused.splitlines()) == 1
+        return False
 
 
 def _check(suffix: str, data: bytes, result: object, path: Path) -> None:

@@ -7,7 +7,6 @@ import time
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from readers import SEEDS, WORDS, try_to_read
 
 

@@ -8,6 +8,7 @@ and orders. :func:`gaitsmith.io.bvh_parse.read_bvh_file` reads one from any dial
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -88,6 +89,12 @@ class BvhFile:
                 f"names, parents and channels must be of the same joints, at least one; got "
                 f"{count}, {len(self.parents)} and {len(self.channels)}"
             )
+        for name in self.names:
+            if name != name.strip() or not name or re.search(r"\n|\s\{|\{$", name):
+                raise InvalidInputError(
+                    f"a joint cannot be called {name[:40]!r} in a BVH: a name has no blanks around "
+                    "it, no line end, and no opening brace behind a blank or at its end"
+                )
         path: list[int] = []
         for joint, parent in enumerate(self.parents):
             while path and path[-1] != parent:

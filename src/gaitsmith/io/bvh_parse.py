@@ -207,6 +207,8 @@ def _joint(words: _Words, tree: _Tree, word: str) -> None:
     name, root = words.name(), word.lower() == "root"
     if not name:
         words.fail(f"{word} without a name")
+    if name.endswith("{"):
+        words.fail(f"the name {name[:40]!r} ends in a brace")
     if root == bool(tree.path) or tree.in_end:
         inside = "inside another joint" if root else "outside of the joints"
         words.fail(f"{word} {name[:40]!r} stands {'in an End Site' if tree.in_end else inside}")
