@@ -340,7 +340,7 @@ def test_a_path_too_short_for_a_step_is_refused(run, tmp_path):
 
 # demo ------------------------------------------------------------------------------------
 
-DEMO = ["walk.bvh", "walk.gif", "walk.npz", "walk.png"]
+DEMO = ["walk.bvh", "walk.gif", "walk.glb", "walk.npz", "walk.png"]
 
 
 def test_demo_writes_its_files(run, tmp_path, monkeypatch):

@@ -308,12 +308,12 @@ def test_save_chooses_by_suffix_in_any_case_and_returns_the_path(tmp_path):
     assert_same(io.load(str(tmp_path / "b.NPZ")), motion)
 
 
-@pytest.mark.parametrize(("name", "hint"), [("a.bvb", "'.bvh'?"), ("a", ""), ("a.glb", "")])
+@pytest.mark.parametrize(("name", "hint"), [("a.bvb", "'.bvh'?"), ("a", ""), ("a.fbx", "")])
 def test_unknown_suffixes_are_refused_before_anything_else(tmp_path, name, hint):
     with pytest.raises(UnknownFormatError, match=r"cannot write .*known suffixes: \.bvh, ") as e:
         io.save(walking(), tmp_path / "nowhere" / name)
     assert str(e.value).endswith(hint or "npz.")
-    with pytest.raises(UnknownFormatError, match=r"cannot read .*known suffixes: \.npz"):
+    with pytest.raises(UnknownFormatError, match=r"cannot read .*known suffixes: .*\.npz"):
         io.load(tmp_path / name)
 
 
