@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 MARKERS = ("hip", "knee", "ankle", "heel", "ball", "toe")
 #: Straightest knee at heel strike: with marker data the hip-ankle distance can exceed the leg.
 STRAIGHTEST_KNEE = float(np.radians(172.0))
+#: Part of a step over which the hips ease into the height of a heel strike.
+EASE = 0.40
 FLAT_PHASES = (0.25, 0.60)
 
 
@@ -157,7 +159,7 @@ def extract(
     )
     if center:
         reach = np.linalg.norm(_read(phase, paths["hip"] - paths["ankle"], hip.times), axis=-1)
-        walk = walk.with_(hip=_with_measured_legs(walk, reach))
+        walk = _with_measured_legs(walk, reach)
     # the identity generalization makes all ends agree with the mu functions
     walk = generalize(walk, walk.body, length, length)
     return Extraction(walk, (first, last), off, frames_per_step / rate)
@@ -287,20 +289,45 @@ def _as_far_from_the_ankle(
     return hip.with_values(values)
 
 
-def _with_measured_legs(walk: WalkData, reach: Float[np.ndarray, "n"]) -> TimedSequence:
-    """Hip path so high that the stance leg is as long as measured, on the rigid foot.
+def _with_measured_legs(walk: WalkData, reach: Float[np.ndarray, "n"]) -> WalkData:
+    """Hip path and heel rise with which the stance leg stays as long as measured.
 
-    Heel strikes determine the ends, where both legs are at their limit; the path eases into
-    them over a quarter of the step.
+    ``reach`` is the measured distance from hip to ankle at the times of ``walk.hip``. Heel
+    strikes determine how high the hips end: lower than measured, where the measured foot slid
+    on and a planted one does not. The path eases down to that height, and the heel rises so
+    much later that the knee need not bend instead.
     """
-    t, c, length = walk.hip.times, walk.character, walk.length
+    t, c, length, foot = walk.hip.times, walk.character, walk.length, walk.body.foot
     pitch = np.where(t < walk.flat, walk.foot1.at(t)[:, 0], walk.foot2.at(t)[:, 0])
-    ankle = rolled_ankle(walk.body.foot, pitch, 0.0)
-    forward = affine(walk.hip.values[:, 0], -c.kappa * length, (1.0 - c.kappa) * length)
-    up = ankle[:, 1] + np.sqrt(np.maximum(reach**2 - (forward - ankle[:, 0]) ** 2, 0.0))
-    ends = hip_height(c, walk.body, length)
-    fade = smoothstep(t / 0.25) * smoothstep((1.0 - t) / 0.20)
-    return walk.hip.with_values(np.stack([forward, ends + fade * (up - ends)], axis=-1))
+    forward, up = np.array(walk.hip.values).T
+    # one smooth dip about each heel strike, the same from both sides: no corner where steps meet
+    near = (1.0 - smoothstep(t / EASE)) + (1.0 - smoothstep((1.0 - t) / EASE))
+    forward += (-c.kappa * length - forward[0]) * near
+    up -= (0.5 * (up[0] + up[-1]) - hip_height(c, walk.body, length)) * near
+    hip = np.stack([forward, up], axis=-1)
+    later = _later_heel(foot, hip, reach, pitch) * (t > walk.heel_off)
+    times, rise = walk.foot2.times, walk.foot2.values[:, 0]
+    fade = 1.0 - smoothstep((times - 1.0) / (0.8 * walk.toe_off))
+    rise = np.minimum(rise + np.interp(times, t, later) * fade, 0.0)
+    return walk.with_(
+        hip=walk.hip.with_values(hip),
+        foot2=walk.foot2.with_values(np.minimum.accumulate(rise)),
+    )
+
+
+def _later_heel(
+    foot: Foot,
+    hip: Float[np.ndarray, "n 2"],
+    reach: Float[np.ndarray, "n"],
+    pitch: Float[np.ndarray, "n"],
+) -> Float[np.ndarray, "n"]:
+    """How much less a raised heel must be raised for the ankle to be ``reach`` from the hip."""
+    low, high = np.minimum(pitch, 0.0), np.zeros_like(pitch)
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        near = np.linalg.norm(hip - rolled_ankle(foot, middle, 0.0), axis=-1) < reach
+        low, high = np.where(near, middle, low), np.where(near, high, middle)
+    return 0.5 * (low + high) - np.minimum(pitch, 0.0)
 
 
 def _interior_knee(body: Body, distance: float) -> float:
