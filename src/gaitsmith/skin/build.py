@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaitsmith.conventions import SIDE_SIGN, SIDES
 from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.motion.roles import humanoid_roles
 from gaitsmith.skin import palette
 from gaitsmith.skin.bones import bone_parts
 from gaitsmith.skin.cage import Cage
@@ -104,21 +106,22 @@ class _Pieces:
 def build_skin(skeleton: Skeleton) -> SkinMesh:
     """A skinned figure around ``skeleton``, in its rest pose.
 
-    A person near the T-pose with VRM humanoid names gets one smooth body of some 8000
-    triangles. One that lacks limbs or stands otherwise gets the rigid pieces of
-    :func:`~gaitsmith.skin.mannequin.build_mannequin`, any other skeleton a slim solid along
+    A person whose rest pose is near the T-pose gets one smooth body of some 9000 triangles,
+    whatever dialect its joints are named in. With VRM humanoid names, one that lacks limbs
+    or stands otherwise gets the rigid pieces of
+    :func:`~gaitsmith.skin.mannequin.build_mannequin`; any other skeleton a slim solid along
     each bone.
     """
-    if not any(name in skeleton.names for name in ("hips", "leftUpperLeg", "leftUpperArm", "head")):
-        rest = skeleton.rest_positions() - skeleton.offsets[0] * [1.0, 0.0, 1.0]
-        rest = rest - [0.0, float(rest[:, 1].min()), 0.0]
-        size = max(float(np.ptp(rest, axis=0).max()), 1e-3)
-        return _rigid(skeleton, bone_parts(skeleton, rest, size), rest, size)
-    maker = Maker(skeleton, 1.0)
+    dressed = _renamed(skeleton)
+    maker = Maker(dressed, 1.0)
     rest = maker.rest - [0.0, maker.floor, 0.0]
     if not fits(maker, rest):
-        figure = build_mannequin(skeleton)
-        return _rigid(skeleton, figure.parts, rest, figure.stature)
+        if any(name in skeleton.names for name in ("leftUpperLeg", "leftUpperArm")):
+            figure = build_mannequin(skeleton)
+            return _rigid(skeleton, figure.parts, rest, figure.stature)
+        rest = maker.rest - [0.0, float(maker.rest[:, 1].min()), 0.0]
+        size = max(float(np.ptp(rest, axis=0).max()), 1e-3)
+        return _rigid(skeleton, bone_parts(skeleton, rest, size), rest, size)
     fit, pieces = Fit(maker, rest), _Pieces()
     _add_body(pieces, fit)
     _add_ears(pieces, fit)
@@ -126,6 +129,15 @@ def build_skin(skeleton: Skeleton) -> SkinMesh:
         if last is not None:
             _add_shoe(pieces, fit, side, last)
     return pieces.mesh(PAINTS, rest, maker.stature)
+
+
+def _renamed(skeleton: Skeleton) -> Skeleton:
+    """The skeleton with VRM's names for the bones of a human, which joints then have alone."""
+    found = humanoid_roles(skeleton.names, skeleton.parents, need=()).joints
+    names = [f"{name} " if name in found else name for name in skeleton.names]
+    for role, joint in found.items():
+        names[joint] = role
+    return replace(skeleton, names=tuple(names))
 
 
 def _add_body(pieces: _Pieces, fit: Fit) -> None:

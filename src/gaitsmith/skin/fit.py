@@ -48,12 +48,12 @@ class Fit:
         crown = maker.crown or (1.0 - HEAD_JOINT) * maker.stature
         self.head = crown / (CROWN - HEAD)
         self.chain = [*spine_chain(maker), self.index("neck"), self.index("head")]
-        heights = [float(at[self.index(name), 1]) for name in ("hips", "neck", "head")]
-        arms = [self.index(f"{side}UpperArm") for side in SIDES]
+        arms, legs = ([self.index(side + j) for side in SIDES] for j in ("UpperArm", "UpperLeg"))
+        hips = float(at[legs, 1].mean())
+        neck, head = (float(at[self.index(name), 1]) for name in ("neck", "head"))
         shoulder = float(at[arms, 1].mean())
-        levels = [heights[0], shoulder, heights[1], heights[2], heights[2] + crown]
+        levels = [hips, shoulder, neck, head, head + crown]
         self._levels = np.maximum.accumulate(np.array(levels) + 1e-3 * g * np.arange(5))
-        legs = [self.index(f"{side}UpperLeg") for side in SIDES]
         self.half_hips = float(np.abs(at[legs, 0]).mean()) / g
         self.half_shoulders = float(np.abs(at[arms, 0]).mean()) / g
         self._boundaries = self._spine_boundaries()
@@ -132,11 +132,15 @@ def fits(maker: Maker, rest: Float[np.ndarray, "joints 3"]) -> bool:
         arm, elbow, hand = (at[side + joint] for joint in ("UpperArm", "LowerArm", "Hand"))
         hip, knee, foot = (at[side + joint] for joint in ("UpperLeg", "LowerLeg", "Foot"))
         upright &= bool(hip[1] - knee[1] > 0.08 * size and knee[1] - foot[1] > 0.08 * size)
-        upright &= bool(np.abs(np.subtract(knee, hip)[[0, 2]]).max() < 0.12 * size)
-        upright &= bool(np.abs(np.subtract(foot, knee)[[0, 2]]).max() < 0.12 * size)
+        for bone in (hip - knee, knee - foot):
+            upright &= bool(np.hypot(bone[0], bone[2]) < 0.6 * bone[1])
         upright &= bool(sign * hip[0] > 0.015 * size and abs(hip[1] - levels[0]) < 0.1 * size)
         upright &= bool(sign * arm[0] > 0.05 * size and abs(arm[1] - levels[1]) < 0.1 * size)
+        if f"{side}Toes" in names:
+            toes = rest[names.index(f"{side}Toes")] - foot
+            upright &= bool(toes[2] > 0.5 * np.abs(toes[0]) and toes[1] < 0.5 * toes[2])
         for bone in (elbow - arm, hand - elbow):
             length = float(np.linalg.norm(bone))
-            upright &= length > 0.05 * size and bool(sign * bone[0] > 0.3 * length)
+            upright &= length > 0.05 * size and bool(np.abs(bone[2]) < 0.5 * length)
+            upright &= bool(sign * bone[0] > -0.2 * length and bone[1] < 0.5 * length)
     return upright

@@ -53,7 +53,7 @@ class CycleOverlay:
         center, rotations = self._cycle.at(self._stride_phase(request.side, p))
         steady = center[:, 0] - self._cycle.center[:, 0].mean()
         steady = steady * (body.hip_width / self._hip_width)
-        sway = shifted_sway(p, request, steady, e0, e1, 0.15 * body.hip_width)
+        sway = shifted_sway(p, request, steady, e0, e1, 0.12 * body.hip_width)
 
         joint = self._cycle.skeleton.index
         pelvis = log(self._scaled(joint("hips"), rotations, size))

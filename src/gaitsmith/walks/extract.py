@@ -15,7 +15,7 @@ from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.signals import butterworth_zero_lag
 from gaitsmith.motion.motion import Markers
 from gaitsmith.walks.data import Character, TimedSequence, WalkData
-from gaitsmith.walks.generalize import affine, ankle_at_heel_strike, generalize, hip_height
+from gaitsmith.walks.generalize import ankle_at_heel_strike, generalize, hip_height
 
 if TYPE_CHECKING:
     from pathlib import Path
