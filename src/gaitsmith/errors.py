@@ -6,6 +6,7 @@ GaitsmithError
 │   └── UnknownNameError                    a name that no table holds
 ├── InfeasibleError                         the task cannot be done
 │   ├── InfeasibleStepError                 this body cannot take this step
+│   ├── LegReachError                       a foothold is out of a leg's reach
 │   └── InfeasibleSpeedError                nobody walks that fast
 ├── FileFormatError                         a file is not what it claims to be
 └── MissingDependencyError (also ImportError)
@@ -73,6 +74,23 @@ class InfeasibleStepError(InfeasibleError):
         super().__init__(
             f"{which}: a step length of {needed:.3f} m is too long for this body: {why}. "
             f"The longest that works is {available:.3f} m"
+        )
+
+
+class LegReachError(InfeasibleError):
+    """A bearing foot would be farther from the hip than the leg is long.
+
+    Attributes: ``step`` (index in the plan), ``side``, ``needed`` and ``available`` (meters from
+    hip to ankle).
+    """
+
+    def __init__(self, *, step: int, side: str, needed: float, available: float) -> None:
+        self.step, self.side = step, side
+        self.needed, self.available = needed, available
+        super().__init__(
+            f"step {step} ({side}): the hip-to-ankle distance would be {needed:.3f} m, but this "
+            f"body's leg reaches {available:.3f} m. Shorten the step, set the feet closer "
+            "together, turn the toes out less, or give the body a longer foot"
         )
 
 

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from gaitsmith.body.body import Body
     from gaitsmith.motion.motion import Motion
+    from gaitsmith.plan.footsteps import StepPlan
 
 #: Step width over stature: 0.10 m for 1.75 m. People walk with 0.06-0.14 m; 0.13 leg lengths
 #: is preferred on a treadmill (Donelan, Kram & Kuo 2001).
@@ -41,7 +42,11 @@ TOE_OUT = float(np.radians(6.0))
 #: Seconds of standing after a stop.
 REST = 0.4
 #: Widest step over leg length, largest toe-out, most frames a second.
-WIDEST_STEP, LARGEST_TOE_OUT, FASTEST_FPS = 0.5, float(np.radians(45.0)), 10_000.0
+WIDEST_STEP, LARGEST_TOE_OUT, FASTEST_FPS = 0.5, float(np.radians(30.0)), 10_000.0
+#: Narrowest step, over stature and in meters, and largest toe-in: beyond, feet touch in passing.
+NARROWEST_STEP, NARROWEST, LARGEST_TOE_IN = 0.05, 0.066, float(np.radians(5.0))
+#: Fewest frames a second at which contacts mean anything between frames.
+SLOWEST_FPS = 5.0
 
 
 def _picture(name: str) -> Callable[[Motion, Path], None]:
@@ -94,8 +99,9 @@ def walk(
         heel strike to heel strike).
     step_width
         Meters between left and right footsteps, measured across; None: 0.057 of the height.
+        From 0.05 of the height (at least 0.066 m) to half the leg.
     toe_out
-        Radians that each foot turns out.
+        Radians that each foot turns out, -5 to 30 deg.
     manner
         Sizes of the rules above the legs of a gait that has no upper body of its own
         (``winter``); ``Manner(pelvis=False)`` switches a layer off.
@@ -130,8 +136,10 @@ def walk(
     who = body_from(body)
     distance = positive("distance", distance, "meters")
     fps = positive("fps", fps, "frames per second")
-    if fps > FASTEST_FPS:
-        raise InvalidInputError(f"fps must be at most {FASTEST_FPS:g}, got {fps:g}")
+    if not SLOWEST_FPS <= fps <= FASTEST_FPS:
+        raise InvalidInputError(
+            f"fps must be from {SLOWEST_FPS:g} to {FASTEST_FPS:g} frames per second, got {fps:g}"
+        )
     if gait not in GAITS:
         raise UnknownNameError("gait", gait, GAITS)
     one_of("start", start, ("stand", "walk"))
@@ -140,6 +148,8 @@ def walk(
         raise InvalidInputError(f"seed must be a whole number, 0 or more, got {seed!r}")
     manner = manner or Manner()
     stance = _stance(who, step_width, toe_out)
+    if step_length is not None:
+        check_step_length(who, positive("step_length", step_length, "meters"))
     pace = choose_pace(who, step_length=step_length, cadence=cadence, speed=speed)
     check_step_length(who, pace.step_length)
     _warn_of_unusual(who, pace.step_length, pace.speed)
@@ -165,6 +175,8 @@ def walk(
     plan = plan_straight(
         distance=distance, pace=pace, stance=stance, ground=ground, start=start, stop=stop
     )
+    if step_length is not None:
+        _warn_of_short_steps(plan, step_length)
     style = GAITS[gait](manner)
     generator = StraightGenerator(style.walk, ground, style.overlay)
     prepared = prepare_walk(plan, generator, who, ground, rest=REST)
@@ -172,18 +184,19 @@ def walk(
 
 
 def _stance(body: Body, step_width: float | None, toe_out: float) -> Stance:
-    width = STEP_WIDTH * body.height if step_width is None else step_width
-    width = positive("step_width", width, "meters")
-    if width > WIDEST_STEP * body.leg_length:
+    narrow = max(NARROWEST_STEP * body.height, NARROWEST)
+    wide = WIDEST_STEP * body.leg_length
+    usual = max(STEP_WIDTH * body.height, narrow)
+    width = positive("step_width", usual if step_width is None else step_width, "meters")
+    if not narrow <= width <= wide:
         raise InvalidInputError(
-            f"step_width must be at most {WIDEST_STEP:g} of the leg length of "
-            f"{body.leg_length:.3f} m, got {width!r} m"
+            f"step_width must be from {narrow:.3f} to {wide:.3f} m for this body, got {width!r} m"
         )
     toe_out = number("toe_out", toe_out, "radians")
-    if abs(toe_out) > LARGEST_TOE_OUT:
+    if not -LARGEST_TOE_IN <= toe_out <= LARGEST_TOE_OUT:
         raise InvalidInputError(
-            f"toe_out must be within +-{np.degrees(LARGEST_TOE_OUT):g} deg, got "
-            f"{np.degrees(toe_out):.1f} deg"
+            f"toe_out must be from {-np.degrees(LARGEST_TOE_IN):g} to "
+            f"{np.degrees(LARGEST_TOE_OUT):g} deg, got {np.degrees(toe_out):.1f} deg"
         )
     return Stance(width, toe_out)
 
@@ -204,6 +217,19 @@ def _warn_of_unusual(body: Body, step_length: float, speed: float) -> None:
         )
 
 
+def _warn_of_short_steps(plan: StepPlan, step_length: float) -> None:
+    along = plan.position[2:, [0, 2]] - plan.position[1:-1, [0, 2]]
+    way = np.stack([np.sin(plan.direction[2:]), np.cos(plan.direction[2:])], axis=-1)
+    longest = float((along * way).sum(-1).max())
+    if longest < step_length - 1e-6:
+        warnings.warn(
+            f"the way is too short for a full step of {step_length:.3f} m; the longest is "
+            f"{longest:.3f} m",
+            GaitsmithWarning,
+            stacklevel=3,
+        )
+
+
 def regenerate(recipe: Motion | str | dict[str, Any]) -> Motion:
     """The motion that a recipe describes, to the byte.
 
@@ -213,8 +239,11 @@ def regenerate(recipe: Motion | str | dict[str, Any]) -> Motion:
         if recipe.labels is None:
             raise InvalidInputError("this motion has no recipe; only generated ones have")
         recipe = recipe.labels.recipe
-    data = json.loads(recipe) if isinstance(recipe, str) else recipe
-    if not isinstance(data.get("walk"), dict):
+    try:
+        data = json.loads(recipe) if isinstance(recipe, str) else recipe
+    except json.JSONDecodeError as error:
+        raise InvalidInputError(f"a recipe must be JSON: {error}") from None
+    if not (isinstance(data, dict) and isinstance(data.get("walk"), dict)):
         raise InvalidInputError("a recipe must be an object with a 'walk' object")
     made_by = data.get("gaitsmith")
     if made_by != __version__:
@@ -224,9 +253,12 @@ def regenerate(recipe: Motion | str | dict[str, Any]) -> Motion:
             stacklevel=2,
         )
     arguments = dict(data["walk"])
-    arguments["body"] = body_from_dict(arguments["body"])
-    arguments["manner"] = Manner(**arguments["manner"])
-    return walk(**arguments)
+    try:
+        arguments["body"] = body_from_dict(arguments["body"])
+        arguments["manner"] = Manner(**arguments["manner"])
+        return walk(**arguments)
+    except (KeyError, TypeError) as error:
+        raise InvalidInputError(f"not a recipe of a walk: {error}") from None
 
 
 def save(motion: Motion, path: str | Path) -> Path:

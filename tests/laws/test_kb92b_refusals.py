@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from walkers import BODIES, PROTOTYPE, bodies, plan_of
 
 import gaitsmith
-from gaitsmith.errors import GaitsmithError, InfeasibleStepError, InvalidInputError
+from gaitsmith.errors import GaitsmithError, InfeasibleStepError, InvalidInputError, LegReachError
 from gaitsmith.ground import GROUNDS
 from gaitsmith.synthesis.step import prepare_walk
 from gaitsmith.synthesis.straight import StraightGenerator
@@ -101,7 +101,7 @@ def test_a_leg_too_short_for_where_the_feet_are_is_refused_with_its_reach():
     """Feet so wide apart that no hip height reaches: the contact stage says so."""
     body, ground = BODIES["child"], GROUNDS["flat"]()
     plan = plan_of(body, [0.4, 0.4, 0.4], stand=True, width=2.5 * body.leg_length)
-    with pytest.raises(InfeasibleStepError, match="reaches") as caught:
+    with pytest.raises(LegReachError, match="reaches") as caught:
         prepare_walk(plan, StraightGenerator(WALK, ground), body, ground)
     error = caught.value
     assert error.needed > error.available

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from judge import broken
@@ -51,3 +54,23 @@ def test_a_heel_strike_in_the_last_frame_is_a_contact():
     landing = motion.labels.footstep_time[-1] * motion.fps
     assert landing == pytest.approx(len(motion) - 1)
     assert motion.contacts[-1, motion.labels.footstep_side[-1]].tolist() == [True, False, False]
+
+
+@pytest.mark.parametrize("height", [0.002, 0.02, 0.05])
+def test_feet_whose_toes_bend_above_the_sole_stand_as_still(height):
+    """The ball's sole point bears only while the foot is flat: later it moves with the heel."""
+    usual = person(1.75)
+    body = replace(usual, foot=replace(usual.foot, toe_joint_height=height))
+    assert broken(walk(distance=3.0, body=body, fps=120)) == {}
+
+
+def test_wide_steps_with_feet_turned_out_stay_in_reach():
+    """A rear foot too short or too far to the side to follow by its heel: the hips come down."""
+    wide = {"step_width": 0.42, "toe_out": np.radians(30.0)}
+    assert broken(walk(distance=5.0, step_length=0.86, cadence=70.0, **wide)) == {}
+
+
+def test_a_foot_that_cannot_roll_is_no_foot():
+    usual = person(1.75)
+    with pytest.raises(InvalidInputError, match=r"foot.ball \(0.050 m\) must be at least 0.07"):
+        replace(usual, foot=replace(usual.foot, ball=0.05))

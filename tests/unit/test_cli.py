@@ -124,14 +124,14 @@ def test_json_says_what_was_asked_for(run):
 def test_warnings_go_where_they_belong(run):
     fast = ["--speed", 1.95, "--step-length", 0.85]
     code, out, err = run(*walk(*fast, "-o", "a.npz", "--json"))
-    [warning] = json.loads(out)["warnings"]
+    said = json.loads(out)["warnings"]
     assert (code, err) == (0, "")
-    assert "Froude number" in warning
+    assert "Froude number" in said[0]
     code, out, err = run(*walk(*fast, "-o", "a.npz"))
-    assert err == f"gaitsmith: warning: {warning}\n"
+    assert err.splitlines() == [f"gaitsmith: warning: {line}" for line in said]
 
 
-@pytest.mark.parametrize("value", ["-6", "-0.5", "+3"])
+@pytest.mark.parametrize("value", ["-4", "-0.5", "+3"])
 def test_values_may_start_with_a_sign(run, value):
     assert run(*walk("--toe-out", value, "-o", "a.npz"))[0] == 0
     assert run(*walk(f"--toe-out={value}", "-o", "a.npz"))[0] == 0
@@ -325,7 +325,7 @@ def test_a_disk_that_fails_leaves_no_file(run, tmp_path, monkeypatch):
     monkeypatch.setitem(pipeline.WRITERS, ".bvh", full)
     code, out, err = run(*walk("-o", "a.npz", "-o", "b.bvh", "--json"))
     assert (code, out) == (1, "")
-    assert "No space left on device" in err
+    assert "no space left on device; choose another" in err
     assert "b.bvh" in err
     assert made(tmp_path) == []
 

@@ -15,7 +15,7 @@ from gaitsmith.body.sole import roll
 from gaitsmith.contact.foothold import footholds, sole_in_air
 from gaitsmith.contact.plan import plan_contact
 from gaitsmith.contact.reach import REACH, REAR_REACH, drawn_near, lowering, raised_heel
-from gaitsmith.errors import InfeasibleStepError, InvalidInputError
+from gaitsmith.errors import InvalidInputError, LegReachError
 from gaitsmith.ground import Flat
 
 BODY = person(1.75)
@@ -139,7 +139,7 @@ def test_a_foot_that_may_follow_pulls_less():
 def test_a_foot_out_of_any_reach_is_refused():
     at, hip, ankle, slack = straight_line()
     ankle[70:, 0, 2] += 1.2 * LEG
-    with pytest.raises(InfeasibleStepError, match=r"step 1 \(left\)") as caught:
+    with pytest.raises(LegReachError, match=r"step 1 \(left\)") as caught:
         lowering(at, hip, ankle, slack, leg_length=LEG)
     assert caught.value.needed > caught.value.available
 

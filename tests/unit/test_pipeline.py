@@ -46,10 +46,14 @@ def test_a_bad_number_is_named(name, bad):
         ({"body": np.nan}, InvalidInputError, "height must be"),
         ({"body": "missing.toml"}, FileFormatError, "missing.toml: cannot be read"),
         ({"toe_out": np.nan}, InvalidInputError, "toe_out must be a finite number of radians"),
-        ({"toe_out": 1.0}, InvalidInputError, r"toe_out must be within \+-45 deg, got 57.3 deg"),
+        ({"toe_out": 1.0}, InvalidInputError, r"toe_out must be from -5 to 30 deg, got 57.3 deg"),
         ({"toe_out": -1.0}, InvalidInputError, r"got -57.3 deg"),
-        ({"step_width": 0.6}, InvalidInputError, "step_width must be at most 0.5 of the leg"),
-        ({"fps": 20_000}, InvalidInputError, "fps must be at most 10000, got 20000"),
+        ({"step_width": 0.6}, InvalidInputError, "step_width must be from 0.088 to 0.430 m"),
+        (
+            {"fps": 20_000},
+            InvalidInputError,
+            "fps must be from 5 to 10000 frames per second, got 20000",
+        ),
         ({"seed": -1}, InvalidInputError, "seed must be a whole number, 0 or more, got -1"),
         ({"seed": 1.5}, InvalidInputError, "seed must be a whole number"),
         ({"seed": True}, InvalidInputError, "seed must be a whole number"),
@@ -151,3 +155,8 @@ def test_a_walk_in_three_lines(tmp_path):
     motion = gaitsmith.walk(distance=1.0)
     gaitsmith.save(motion, tmp_path / "walk.npz")
     assert len(gaitsmith.load(tmp_path / "walk.npz")) == len(motion)
+
+
+def test_a_way_too_short_for_the_step_asked_for_is_said():
+    with pytest.warns(GaitsmithWarning, match=r"full step of 0.800 m; the longest is 0.640 m"):
+        walk(distance=1.0, step_length=0.8)

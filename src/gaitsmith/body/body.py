@@ -163,6 +163,11 @@ class Body:
                 f"foot (heel to toe tip {foot.length:.3f} m) must be shorter than 0.7 of the "
                 f"leg ({self.leg_length:.3f} m): no such body can roll over its foot"
             )
+        if foot.ball < 0.07 * self.leg_length:
+            wrong.append(
+                f"foot.ball ({foot.ball:.3f} m) must be at least 0.07 of the leg "
+                f"({self.leg_length:.3f} m): no such body can roll over its foot"
+            )
         if foot.ankle_height >= 0.5 * self.shin:
             wrong.append(
                 f"foot.ankle_height ({foot.ankle_height:.3f} m) must be below half the shin "

@@ -50,8 +50,12 @@ def main() -> None:
         app()
     except InvalidInputError as error:
         code, text = 2, str(error)
-    except (GaitsmithError, OSError) as error:
+    except GaitsmithError as error:
         code, text = 1, str(error)
+    except OSError as error:
+        code, text = 1, str(error)
+        if error.strerror and error.filename is not None:
+            text = f"{error.filename}: {error.strerror.lower()}; choose another file or folder"
     else:
         return
     print("gaitsmith: " + " ".join(text.split()), file=sys.stderr)

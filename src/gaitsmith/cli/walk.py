@@ -18,7 +18,13 @@ if TYPE_CHECKING:
 def walk(
     output: Annotated[
         list[Path],
-        typer.Option("-o", "--output", help="File to write; the suffix says what. Repeatable."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE",
+            readable=False,
+            help="File to write; the suffix says what. Repeatable.",
+        ),
     ],
     distance: Annotated[float, typer.Option(help="How far to walk, straight ahead, meters.")],
     body: Annotated[

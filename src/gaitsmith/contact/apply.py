@@ -141,7 +141,11 @@ class ContactPlan:
         # a walk that ends with a heel strike ends with that heel on the ground
         touching = down | (phase >= 1.0)[:, None]
         toes = touching & (pitch <= 0.0)
-        contacts = np.stack([touching & (pitch >= 0.0), toes & (meta == 0.0), toes], axis=-1)
+        # where the toes bend above the sole, the ball's sole point moves as soon as they bend
+        ball = toes & (meta == 0.0)
+        if self.body.foot.toe_joint_height > 0.0:
+            ball &= pitch == 0.0
+        contacts = np.stack([touching & (pitch >= 0.0), ball, toes], axis=-1)
         return Poses(
             center=center,
             heading=heading,

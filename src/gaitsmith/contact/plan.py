@@ -8,7 +8,14 @@ import numpy as np
 
 from gaitsmith.contact.apply import ContactPlan
 from gaitsmith.contact.foothold import Footholds, footholds, sole_in_air
-from gaitsmith.contact.reach import REAR_SLACK, drawn_near, lowering, raised_heel
+from gaitsmith.contact.reach import (
+    REAR_REACH,
+    REAR_SLACK,
+    check_reach,
+    drawn_near,
+    lowering,
+    raised_heel,
+)
 from gaitsmith.contact.reference import Proposal, ReferenceStep, stack
 from gaitsmith.conventions import SIDE_SIGN
 from gaitsmith.geometry.curves import smoothstep
@@ -42,7 +49,7 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
 
     Raises
     ------
-    InfeasibleStepError
+    LegReachError
         If a leg cannot reach its foothold.
     """
     walk = stack(steps)
@@ -66,9 +73,32 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
     hip[..., 1] -= down_by[:, None]
     _raise_rear_heels(walk, body, stands, rear, hip)
     _lock(walk, body, stands, down)
+    _lower_the_rest(walk, body, down, rear, hip)
+    check_reach(walk.at, hip, walk.curves["ankle"], down, leg_length=body.leg_length)
     for side in (0, 1):
         _swing(walk, body, ground, stands, targets, side, hip[:, side])
     return ContactPlan.of(walk, stands, targets, body)
+
+
+def _lower_the_rest(
+    walk: Proposal,
+    body: Body,
+    down: Bool[np.ndarray, "M 2"],
+    rear: Bool[np.ndarray, "M 2"],
+    hip: Float[np.ndarray, "M 2 3"],
+) -> None:
+    """Lower the hips once more where raising the heel could not bring the rear ankle near.
+
+    That is a foot too short for the step; the others are in reach already.
+    """
+    ankle = walk.curves["ankle"]
+    short = rear & (np.linalg.norm(hip - ankle, axis=-1) > (REAR_REACH + 1e-6) * body.leg_length)
+    if not short.any():
+        return
+    slack = np.where(short, 0.0, np.inf)
+    down_by = lowering(walk.at, hip, ankle, slack, leg_length=body.leg_length)
+    walk.curves["center"][:, 1] -= down_by
+    hip[..., 1] -= down_by[:, None]
 
 
 def _hips(walk: Proposal, body: Body) -> Float[np.ndarray, "M 2 3"]:

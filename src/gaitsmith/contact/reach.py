@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.errors import InfeasibleStepError
+from gaitsmith.conventions import SIDES
+from gaitsmith.errors import LegReachError
 from gaitsmith.geometry.curves import hann_average, running_maximum
 
 if TYPE_CHECKING:
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 REACH = 0.9988
 #: The same for the rear foot, which may raise its heel (4.3 deg).
 REAR_REACH = 0.9993
+#: Beyond this no pose is made.
+LIMIT = 0.9997
 #: Grid on which the lowering is found, and over what part of a step it is spread.
 PER_STEP, SPREAD = 60, 0.12
 #: How much nearer the rear ankle may come by raising its heel, at toe-off, over leg length.
@@ -55,7 +58,7 @@ def lowering(
 
     Raises
     ------
-    InfeasibleStepError
+    LegReachError
         Where a bearing foot is farther to the side of the hips than the leg is long.
     """
     limit = REACH * leg_length
@@ -64,12 +67,11 @@ def lowering(
     lost = bears & (across >= limit**2)
     if lost.any():
         node, side = np.argwhere(lost)[0]
-        raise InfeasibleStepError(
+        raise LegReachError(
             step=int(at[node]),
-            side=("left", "right")[side],
+            side=SIDES[side],
             needed=float(np.sqrt(across[node, side])),
             available=limit,
-            why="the foot would be farther from the hips than the leg reaches",
         )
     top = np.sqrt(np.maximum(limit**2 - across, 0.0)) + ankle[..., 1] - hip[..., 1]
     need = np.maximum(0.0, -np.where(bears, top + np.where(bears, slack, 0.0), np.inf).min(-1))
@@ -96,6 +98,27 @@ def _cubic(
     v = 1.0 - u
     rise = values[i + 1] - values[i]
     return values[i] + u * u * (3.0 - 2.0 * u) * rise + u * v * (v * slope[i] - u * slope[i + 1])
+
+
+def check_reach(
+    at: Float[np.ndarray, "M"],
+    hip: Float[np.ndarray, "M 2 3"],
+    ankle: Float[np.ndarray, "M 2 3"],
+    down: Bool[np.ndarray, "M 2"],
+    *,
+    leg_length: float,
+) -> None:
+    """Raise LegReachError if a bearing leg is longer than it can be."""
+    distance = np.where(down, np.linalg.norm(hip - ankle, axis=-1), 0.0)
+    if distance.max() <= LIMIT * leg_length:
+        return
+    node, side = np.unravel_index(int(distance.argmax()), distance.shape)
+    raise LegReachError(
+        step=int(at[node]),
+        side=SIDES[int(side)],
+        needed=float(distance[node, side]),
+        available=LIMIT * leg_length,
+    )
 
 
 def raised_heel(

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from gaitsmith.motion.skeleton import Skeleton
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Labels:
     """What a generator knows exactly and a reader of files has to guess.
 
@@ -128,6 +128,14 @@ class Motion:
     def __len__(self) -> int:
         """Number of frames."""
         return len(self.root_position)
+
+    def __repr__(self) -> str:
+        """One line: size, rate, what it carries."""
+        extras = [n for n in ("contacts", "translations", "labels") if getattr(self, n) is not None]
+        return (
+            f"<Motion: {len(self)} frames at {self.fps:g} fps, {len(self.skeleton)} joints"
+            f"{', ' + ', '.join(extras) if extras else ''}>"
+        )
 
     @property
     def duration(self) -> float:

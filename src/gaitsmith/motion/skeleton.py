@@ -100,6 +100,10 @@ class Skeleton:
         """Number of joints."""
         return len(self.names)
 
+    def __repr__(self) -> str:
+        """One line: how many joints, and the first ones."""
+        return f"<Skeleton: {len(self)} joints, {', '.join(self.names[:4])}, ...>"
+
     def index(self, name: str) -> int:
         """Index of the joint called ``name``; UnknownNameError if there is none."""
         try:

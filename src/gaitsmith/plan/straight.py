@@ -58,7 +58,7 @@ def stride_lengths(distance: float, length: float, start: str, stop: str) -> lis
         if not head and count == 0:
             raise InfeasibleError(
                 f"distance {distance:g} m holds no step of {length:.3f} m; with stop='walk' at "
-                "least one must fit"
+                "least one must fit: go farther, or shorten the step"
             )
         return head + [length] * count
     if rest <= 1e-9:

@@ -8,12 +8,14 @@ amplitude follows the step lengths, so starts and stops ease by themselves.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaitsmith._checks import number
 from gaitsmith.conventions import SIDE_SIGN
+from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.rotations import about, exp, inverse, log, multiply
 from gaitsmith.synthesis.overlay import Overlay
@@ -23,6 +25,10 @@ if TYPE_CHECKING:
 
     from gaitsmith.body.body import Body
     from gaitsmith.walks.model import SagittalStep, StepRequest
+
+
+#: No angle (radians) or share of the rules may be larger.
+LARGEST_SIZE = 2.0
 
 
 @dataclass(frozen=True)
@@ -74,6 +80,17 @@ class Manner:
     head_pitch: float = 0.8
     pelvis: bool = True
     arms: bool = True
+
+    def __post_init__(self) -> None:
+        """Check that every size is a number that a body can show."""
+        for field in fields(self):
+            if field.name not in ("pelvis", "arms"):
+                value = number(f"manner.{field.name}", getattr(self, field.name), "radians or 1")
+                if abs(value) > LARGEST_SIZE or (field.name == "usual" and value <= 0.0):
+                    raise InvalidInputError(
+                        f"manner.{field.name} must be within +-{LARGEST_SIZE:g} (usual: above 0), "
+                        f"got {value!r}"
+                    )
 
 
 class RuleOverlay:
