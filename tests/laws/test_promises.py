@@ -11,6 +11,7 @@ from judge import broken
 from people import ENDS, Errand, errands, person
 
 from gaitsmith.body.presets import BODIES
+from gaitsmith.errors import InvalidInputError
 from gaitsmith.pipeline import walk
 
 
