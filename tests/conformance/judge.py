@@ -1,4 +1,4 @@
-"""An independent judge of generated motions: design section 6 on level ground.
+"""An independent judge of generated motions: the promises on level ground.
 
 It reads the skeleton, the rotations, the root, the flags and the labels of a motion and
 computes everything else anew; it imports no kinematics of the package.

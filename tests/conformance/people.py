@@ -69,7 +69,7 @@ class Errand:
 
 @st.composite
 def errands(draw, frame_rates=(24.0, 30.0, 59.94, 60.0, 120.0), shortest=0.1, longest=12.0):
-    """All that design section 6 promises to walk, on level ground."""
+    """All that is promised to walk, on level ground."""
     body = draw(people())
     length = draw(st.floats(0.3, 1.0)) * body.leg_length
     cadence = draw(st.floats(70.0, min(140.0, fastest_cadence(body, length))))

@@ -1,4 +1,4 @@
-"""What every generated motion promises (design section 6), asked of anybody's walk."""
+"""What every generated motion promises, asked of anybody's walk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every knob does what it says, measured back from the motion (design section 6)."""
+"""Every knob does what it says, measured back from the motion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command line of design section 5: exit codes, one line of error, files or none, JSON."""
+"""The command line: exit codes, one line of error, files or none, JSON."""
 
 from __future__ import annotations
 
@@ -177,7 +177,7 @@ def test_version(run):
 
 # help ------------------------------------------------------------------------------------
 
-#: Commands of design section 5; those that are not built yet must not show.
+#: Commands of the plan; those that are not built yet must not show.
 DESIGNED = {"demo", "walk", "learn", "compose", "certify", "measure", "convert", "list"}
 OPTIONS = {
     "walk": "output distance body gait step-length speed cadence start stop step-width toe-out "

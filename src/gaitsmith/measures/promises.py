@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def promises(motion: Motion, ground: Ground) -> dict[str, float]:
-    """Figures of design section 6 that a generated motion can show by itself.
+    """The promises that a generated motion can show by itself.
 
     Returns
     -------

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from gaitsmith.ground import Ground
     from gaitsmith.plan.pace import Pace
 
-#: First step over the steady one (0.80 measured: human-facts G5).
+#: First step over the steady one (0.80 measured, one person from rest).
 FIRST_STEP = 0.8
 #: Duration of the starting and of the closing step over a steady one. The clock eases through
 #: them, from rest to the steady rate and back, so one half longer means never faster.

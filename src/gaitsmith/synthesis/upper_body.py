@@ -161,7 +161,7 @@ def shifted_sway(
 
     Nearly the same at all step lengths ``e0`` (before) and ``e1`` (this), over the usual one.
     Before the first foot can leave the ground the weight must be over the other one, so a
-    start shifts early and far, ``reach`` meters (human-facts: Yiou 2016, 2017).
+    start shifts early and far, ``reach`` meters (Yiou et al. 2016, 2017).
     """
 
     def size(e: float) -> float:
