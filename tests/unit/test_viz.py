@@ -12,6 +12,7 @@ from gaitsmith.geometry.rotations import about, multiply
 from gaitsmith.motion.kinematics import forward_kinematics
 from gaitsmith.motion.motion import Labels, Motion
 from gaitsmith.motion.skeleton import Skeleton
+from gaitsmith.skin.build import build_skin
 from gaitsmith.skin.mannequin import build_mannequin
 from gaitsmith.viz import contact_sheet, gif
 from gaitsmith.viz.canvas import nice_step
@@ -138,6 +139,18 @@ def test_sides_have_different_colours_and_mirrored_shapes():
         np.testing.assert_allclose(
             np.sort(left.vertices, axis=0), np.sort(mirrored, axis=0), atol=1e-9
         )
+
+
+def test_skinned_figure_is_drawn_like_the_rigid_one():
+    """The same person in the same place: the two silhouettes are nearly one."""
+    skeleton = person()
+    seen = camera("front", heading=0.0, target=np.zeros(3), center=(150, 280), scale=150.0)
+    masks = []
+    for figure in (build_mannequin(skeleton), build_skin(skeleton)):
+        image = Image.new("RGB", (300, 300), (255, 255, 255))
+        draw_figure(image, figure, *at_rest(skeleton), seen)
+        masks.append(np.asarray(image).min(axis=2) < 250)
+    assert (masks[0] & masks[1]).sum() > 0.75 * (masks[0] | masks[1]).sum()
 
 
 def test_mannequin_without_some_joints_or_any():

@@ -127,15 +127,16 @@ def fits(maker: Maker, rest: Float[np.ndarray, "joints 3"]) -> bool:
     if len(spine_chain(maker)) < 2 or np.abs(rest).max() > 3.0 * size:
         return False
     levels = [at[name][1] for name in ("hips", "neck", "head")]
-    upright = bool(np.diff(levels).min() > 0.01 * size and levels[1] - levels[0] > 0.15 * size)
+    trunk = levels[1] - max(at[f"{side}UpperLeg"][1] for side in SIDES)
+    upright = bool(np.diff(levels).min() > 0.01 * size and trunk > 0.15 * size)
     for sign, side in zip((1.0, -1.0), SIDES, strict=True):
         arm, elbow, hand = (at[side + joint] for joint in ("UpperArm", "LowerArm", "Hand"))
         hip, knee, foot = (at[side + joint] for joint in ("UpperLeg", "LowerLeg", "Foot"))
         upright &= bool(hip[1] - knee[1] > 0.08 * size and knee[1] - foot[1] > 0.08 * size)
         for bone in (hip - knee, knee - foot):
             upright &= bool(np.hypot(bone[0], bone[2]) < 0.6 * bone[1])
-        upright &= bool(sign * hip[0] > 0.015 * size and abs(hip[1] - levels[0]) < 0.1 * size)
-        upright &= bool(sign * arm[0] > 0.05 * size and abs(arm[1] - levels[1]) < 0.1 * size)
+        upright &= bool(sign * hip[0] > 0.015 * size and abs(hip[1] - levels[0]) < 0.15 * size)
+        upright &= bool(sign * arm[0] > 0.05 * size and abs(arm[1] - levels[1]) < 0.15 * size)
         if f"{side}Toes" in names:
             toes = rest[names.index(f"{side}Toes")] - foot
             upright &= bool(toes[2] > 0.5 * np.abs(toes[0]) and toes[1] < 0.5 * toes[2])

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
     from gaitsmith.skin.mannequin import Mannequin
+    from gaitsmith.skin.mesh import SkinMesh
 
 VIEWS = ("right", "left", "front", "top", "three-quarter", "rear-quarter")
 
@@ -208,7 +209,7 @@ def rasterize(corners: Float[np.ndarray, "faces 3 3"], size: tuple[int, int]) ->
 
 def draw_figure(
     image: Image.Image,
-    figure: Mannequin,
+    figure: Mannequin | SkinMesh,
     positions: Float[np.ndarray, "joints 3"],
     world: Float[np.ndarray, "joints 4"],
     view: Camera,
@@ -220,7 +221,7 @@ def draw_figure(
     image
         What to draw on; supersample and reduce it for smooth edges.
     figure
-        The mannequin of the skeleton.
+        The figure of the skeleton, of rigid pieces or skinned.
     positions, world
         World positions (meters) and rotations of the joints of one frame.
     view
