@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 #: The sole keeps this far from the ground in swing, meters, rising over a fifth of the swing.
 CLEARANCE, CLEARANCE_RAMP = 0.010, 0.2
 #: Part of the swing over which its first speed is matched to the leaving foot's.
-LEAVING = 0.4
+LEAVING = 0.2
 
 
 def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> ContactPlan:

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 REACH = 0.9988
 #: The same for the rear foot, which may raise its heel (4.3 deg).
 REAR_REACH = 0.9993
+#: The same for a swinging foot (3.6 deg), and how softly it is kept, over leg length.
+SWING_REACH, SOFT = 0.9995, 0.0022
 #: Beyond this no pose is made.
 LIMIT = 0.9997
 #: Grid on which the lowering is found, and over what part of a step it is spread.
@@ -170,10 +172,10 @@ def drawn_near(
 ) -> Float[np.ndarray, "n 3"]:
     """Ankles of a swinging foot brought within reach of the hips, along the leg.
 
-    The distance becomes a soft minimum (4 mm) of itself and the limit, where ``weight`` is 1;
-    0 leaves the ankle where it is.
+    The distance becomes a soft minimum (:data:`SOFT`) of itself and the limit, where ``weight``
+    is 1; 0 leaves the ankle where it is.
     """
-    limit, soft = REACH * body.leg_length, 0.004
+    limit, soft = SWING_REACH * body.leg_length, SOFT * body.leg_length
     line = ankle - hip
     distance = np.linalg.norm(line, axis=-1)
     over = (distance - limit) / soft

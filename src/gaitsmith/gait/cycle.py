@@ -25,8 +25,8 @@ EVENTS = ("heel_strike", "foot_flat", "heel_off", "toe_off")
 class Cycle:
     """A straight, level stride from left heel strike to left heel strike that closes on itself.
 
-    Sample ``k`` of K is at ``stride_phase = k / K``; the sample after the last is the first,
-    one stride ahead. The walk heads along +Z.
+    Sample ``k`` of K is at ``stride_phase = k / K`` (times ``strides``); the sample after the
+    last is the first, one loop ahead. The walk heads along +Z.
 
     Attributes
     ----------
@@ -42,6 +42,9 @@ class Cycle:
         strike is 0.
     stride_length, duration
         Meters and seconds of the stride.
+    strides
+        Strides after which the loop closes: 2 where the arms do not repeat with the legs, which
+        always do; the stride phase then runs from 0 to 2.
     source, license
         Where it comes from and what may be done with it.
     """
@@ -52,6 +55,7 @@ class Cycle:
     events: Float[np.ndarray, "2 4"]
     stride_length: float
     duration: float
+    strides: int = 1
     source: str = ""
     license: str = ""
 
@@ -73,6 +77,8 @@ class Cycle:
             raise InvalidInputError(
                 "events of a foot must follow each other: heel strike, foot flat, heel off, toe off"
             )
+        if self.strides not in (1, 2):
+            raise InvalidInputError(f"strides of a cycle must be 1 or 2, got {self.strides!r}")
         object.__setattr__(self, "center", frozen_array("center", self.center, (count, 3)))
         object.__setattr__(self, "rotations", rotations)
         object.__setattr__(self, "events", events)
@@ -91,7 +97,7 @@ class Cycle:
     def at(
         self, stride_phase: Float[np.ndarray, "n"]
     ) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, "n joints 4"]]:
-        """Center offset (meters) and local rotations at any stride phases; period 1.
+        """Center offset (meters) and local rotations at any stride phases; period ``strides``.
 
         Periodic cubic through the samples; exact at them.
         """
@@ -105,6 +111,7 @@ class Cycle:
         table = np.concatenate([center, quats], axis=1)
         grid = np.arange(-2, count + 3) / count
         slopes = np.gradient(table, 1.0 / count, axis=0)
-        values = hermite(grid, table, slopes, np.asarray(stride_phase, dtype=np.float64) % 1.0)
+        share = np.asarray(stride_phase, dtype=np.float64) / self.strides
+        values = hermite(grid, table, slopes, share % 1.0)
         turned = values[:, 3:].reshape(-1, joints, 4)
         return values[:, :3], turned / np.linalg.norm(turned, axis=-1, keepdims=True)

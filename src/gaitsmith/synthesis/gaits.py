@@ -29,8 +29,9 @@ class Gait:
 def neutral(_: Manner | None = None) -> Gait:
     """A measured man's whole body, made symmetric, his arms relaxed [Rajagopal 2016]."""
     cycle = neutral_cycle()
-    data = walk_data_of(cycle, subject())
-    return Gait(KinematicWalk([data]), CycleOverlay(cycle, data.body.leg_length))
+    body = subject()
+    pair = walk_data_of(cycle, body)
+    return Gait(KinematicWalk([pair]), CycleOverlay(cycle, body.leg_length))
 
 
 def winter_rules(manner: Manner | None = None) -> Gait:

@@ -90,6 +90,7 @@ def blended_character(
         gains=tuple(a * x + b * y for x, y in zip(first.gains, second.gains, strict=True)),
         bounce_power=a * first.bounce_power + b * second.bounce_power,
         swing_power=a * first.swing_power + b * second.swing_power,
+        hip=(a * first.hip[0] + b * second.hip[0], a * first.hip[1] + b * second.hip[1]),
     )
 
 

@@ -61,7 +61,8 @@ class Character:
         ``r*``: step length over leg length of the measured step.
     knee, strike_pitch, off_pitch, off_meta
         mu1*..mu4*, radians: interior knee angle at heel strike (pi is straight), foot pitch at
-        heel strike, magnitude of the foot pitch at toe-off, meta angle at toe-off.
+        heel strike (negative: the toes land first), magnitude of the foot pitch at toe-off, meta
+        angle at toe-off.
     kappa
         At heel strike the hips are ``kappa`` of a step length behind the new foot. The paper
         assumes 1/2; it belongs to the person.
@@ -71,6 +72,9 @@ class Character:
     bounce_power, swing_power
         The bounce of the hips is scaled with the stride length to this power (0: the paper),
         and so is the swing's rise over the chord and the overshoot of its pitch.
+    hip
+        Hip joint of the landing leg forward of and above the hips' middle at heel strike, in
+        leg lengths: the pelvis is turned and tipped then. The papers have it in the middle.
     """
 
     ratio: float
@@ -82,17 +86,22 @@ class Character:
     gains: tuple[float, float, float, float] = (0.15, 0.35, 0.75, 0.55)
     bounce_power: float = 2.0
     swing_power: float = 1.0
+    hip: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Check ranges."""
-        for name in ("ratio", "knee", "strike_pitch", "off_pitch", "off_meta"):
+        for name in ("ratio", "knee", "off_pitch", "off_meta"):
             object.__setattr__(self, name, positive(name, getattr(self, name), "radians or 1"))
+        if number("strike_pitch", self.strike_pitch, "radians") == 0.0:
+            raise InvalidInputError("strike_pitch must not be 0: generalization divides by it")
         if not 0.0 < number("kappa", self.kappa, "1") < 1.0:
             raise InvalidInputError(f"kappa must be between 0 and 1, got {self.kappa!r}")
         if len(self.gains) != 4 or not 0.0 <= self.gains[0] <= 0.3:
             raise InvalidInputError(
                 f"gains must be four numbers, the first in [0, 0.3], got {self.gains!r}"
             )
+        if len(self.hip) != 2 or max(abs(number("hip", v, "1")) for v in self.hip) > 0.3:
+            raise InvalidInputError(f"hip must be two shares of the leg, got {self.hip!r}")
 
 
 @dataclass(frozen=True, eq=False)

@@ -58,7 +58,9 @@ def walk_data_from_json(text: str, path: object = "walk data") -> WalkData:
         if data["format"] != FORMAT:
             raise FileFormatError(path, f"format is {data['format']!r}, not {FORMAT!r}")
         character = dict(data["character"])
-        character["gains"] = tuple(character["gains"])
+        for name in ("gains", "hip"):
+            if name in character:
+                character[name] = tuple(character[name])
         fields: dict[str, Any] = dict(data["events"])
         for name, s in data["sequences"].items():
             fields[name] = TimedSequence(np.array(s["times"]), np.array(s["values"]))

@@ -45,9 +45,12 @@ def mu(character: Character, body: Body, length: float) -> tuple[float, float, f
     """
     more = length / body.leg_length - character.ratio
     a1, a2, a3, a4 = character.gains
+    strike = character.strike_pitch + a2 * more
+    # whoever lands on the heel never lands on the toes, and the other way round
+    heel = character.strike_pitch > 0.0
     return (
         min(character.knee - a1 * more, float(np.pi)),
-        max(character.strike_pitch + a2 * more, SMALLEST_ANGLE),
+        max(strike, SMALLEST_ANGLE) if heel else min(strike, -SMALLEST_ANGLE),
         max(character.off_pitch + a3 * more, SMALLEST_ANGLE),
         max(character.off_meta + a4 * more, SMALLEST_ANGLE),
     )
@@ -76,7 +79,8 @@ def ankle_at_heel_strike(foot: Foot, length: float, pitch: float) -> Float[np.nd
 def hip_height(character: Character, body: Body, length: float) -> float:
     """Height of the hips at the heel strike that ends a step of ``length``, meters.
 
-    [KB92b] Eqs. 7-11 with the measured ``kappa`` in place of 1/2 (erratum D3).
+    [KB92b] Eqs. 7-11 with the measured ``kappa`` in place of 1/2 (erratum D3), and the hip joint
+    where the turned pelvis has it, if the character says so.
 
     Raises
     ------
@@ -87,7 +91,8 @@ def hip_height(character: Character, body: Body, length: float) -> float:
     mu1, mu2, _, _ = mu(character, body, length)
     leg = body.thigh**2 + body.shin**2 - 2.0 * body.thigh * body.shin * np.cos(mu1)
     x, y = ankle_at_heel_strike(body.foot, length, mu2)
-    square = leg - (x - (1.0 - character.kappa) * length) ** 2
+    lead, lift = (body.leg_length * share for share in character.hip)
+    square = leg - (x - (1.0 - character.kappa) * length - lead) ** 2
     if square <= 0.0:
         raise InfeasibleStepError(
             step=None,
@@ -96,7 +101,7 @@ def hip_height(character: Character, body: Body, length: float) -> float:
             available=LONGEST_STEP * body.leg_length,
             why=f"the leg of {body.leg_length:.3f} m does not span it",
         )
-    return float(y + np.sqrt(square))
+    return float(y + np.sqrt(square) - lift)
 
 
 def check_step_length(
@@ -183,13 +188,18 @@ def generalize(
     ankle_forward = affine(ankle[:, 0], start[0], end[0])
     ankle_up = arc(walk.ankle.unit, alpha * ankle[:, 1], start[1], end[1], swing)
     f1, f2, f3, m = (s.values for s in (walk.foot1, walk.foot2, walk.foot3, walk.meta))
+    f2 = f2 * (-off / f2[-1])
+    if f2[0] == 0.0:
+        f1 = f1 * (strike_before / f1[0])
+    else:  # a foot that is never level: its landing ends where its rise begins
+        f1 = arc(walk.foot1.unit, f1[:, 0], strike_before, float(f2[0, 0]))[:, None]
     return walk.with_(
         body=body,
         previous_length=float(previous_length),
         length=float(length),
         hip=walk.hip.with_values(np.stack([hip_forward, hip_up], axis=-1)),
-        foot1=walk.foot1.with_values(f1 * (strike_before / f1[0])),
-        foot2=walk.foot2.with_values(f2 * (-off / f2[-1])),
+        foot1=walk.foot1.with_values(f1),
+        foot2=walk.foot2.with_values(f2),
         foot3=walk.foot3.with_values(arc(walk.foot3.unit, f3[:, 0], -off_before, strike, swing)),
         meta=walk.meta.with_values(m * (meta / m[-1])),
         ankle=walk.ankle.with_values(np.stack([ankle_forward, ankle_up], axis=-1)),

@@ -47,26 +47,34 @@ class KinematicWalk:
     Parameters
     ----------
     prototypes
-        Walk data of one person at different step lengths, in any order. The two nearest in
-        step length over leg length are generalized and blended ([KB92b] section 6 asks for
-        a nearer measurement where the step is far from the measured one).
+        Walk data of one person at different step lengths, in any order; a pair where the steps
+        on the left and on the right foot differ. The two nearest in step length over leg length
+        are generalized and blended ([KB92b] section 6 asks for a nearer measurement where the
+        step is far from the measured one).
 
     Notes
     -----
     [KB92b]. Starting and stopping are beyond the paper: they are the same sequences with one
-    step length 0 and standing as the other end.
+    step length 0 and standing as the other end. So is the pair: the paper's walker is
+    symmetric.
     """
 
-    def __init__(self, prototypes: Sequence[WalkData]) -> None:
+    def __init__(self, prototypes: Sequence[WalkData | tuple[WalkData, WalkData]]) -> None:
         if not prototypes:
             raise InvalidInputError("a kinematic walk needs at least one measured step")
-        self._prototypes = tuple(sorted(prototypes, key=lambda w: w.character.ratio))
-        self._dense = tuple(densified(w) for w in self._prototypes)
+        pairs = [(p, p) if isinstance(p, WalkData) else p for p in prototypes]
+        pairs.sort(key=lambda pair: sum(w.character.ratio for w in pair))
+        self._prototypes = tuple(pairs)
+        self._dense = tuple(
+            (densified(left), densified(right) if right is not left else densified(left))
+            for left, right in pairs
+        )
+        self._alike = len(pairs) == 1 and pairs[0][0] is pairs[0][1]
         self._cached: Callable[[Body, StepRequest], SagittalStep] = lru_cache(512)(self._step)
 
     @property
-    def prototypes(self) -> tuple[WalkData, ...]:
-        """The measured steps, shortest first."""
+    def prototypes(self) -> tuple[tuple[WalkData, WalkData], ...]:
+        """The measured steps on the left and on the right foot, shortest first."""
         return self._prototypes
 
     def step(self, body: Body, request: StepRequest) -> SagittalStep:
@@ -74,14 +82,19 @@ class KinematicWalk:
         return self._cached(body, request)
 
     def walk_data(
-        self, body: Body, previous_length: float, length: float, start_height: float | None = None
+        self,
+        body: Body,
+        previous_length: float,
+        length: float,
+        start_height: float | None = None,
+        side: int = 0,
     ) -> WalkData:
         """Generalized walk data for one step of ``body``; lengths in meters, above zero.
 
-        Sampled on :func:`phase_grid` of its events.
+        ``side`` is that of the stance foot. Sampled on :func:`phase_grid` of its events.
         """
-        around, share = self._around(body, length)
-        before = self._character(body, previous_length)
+        around, share = self._around(body, length, side)
+        before = self._character(body, previous_length, 1 - side)
         walks = [
             generalize(w, body, previous_length, length, start_height=start_height, before=before)
             for w in around
@@ -90,36 +103,38 @@ class KinematicWalk:
             return walks[0]
         return densified(blend(walks[0], walks[1], share, start_height=start_height, before=before))
 
-    def _around(self, body: Body, length: float) -> tuple[tuple[WalkData, ...], float]:
+    def _around(self, body: Body, length: float, side: int) -> tuple[tuple[WalkData, ...], float]:
         """The one or two measured steps nearest to ``length``, and the share of the second."""
         ratio = length / body.leg_length
-        ratios = [w.character.ratio for w in self._prototypes]
+        ratios = [pair[side].character.ratio for pair in self._prototypes]
         right = int(np.searchsorted(ratios, ratio))
-        around = self._dense[max(right - 1, 0) : right + 1]
+        around = tuple(pair[side] for pair in self._dense[max(right - 1, 0) : right + 1])
         if len(around) == 1:
             return around, 0.0
         return around, (ratio - ratios[right - 1]) / (ratios[right] - ratios[right - 1])
 
-    def _character(self, body: Body, length: float) -> Character:
+    def _character(self, body: Body, length: float, side: int) -> Character:
         """Of a step of ``length``: it must not depend on the steps beside it."""
-        around, share = self._around(body, length)
+        around, share = self._around(body, length, side)
         if len(around) == 1:
             return around[0].character
         one, two = (w.character for w in around)
         return blended_character(one, two, share, body, length)
 
-    def _rear(self, walk: WalkData) -> tuple[Float[np.ndarray, "R"], Float[np.ndarray, "R"]]:
+    def _rear(
+        self, walk: WalkData, side: int
+    ) -> tuple[Float[np.ndarray, "R"], Float[np.ndarray, "R"]]:
         """Pitch and meta of the rear foot on the grid of [0, TOM]: F2 and M of the step before.
 
         That step had its own length, so its sequences end at mu3 and mu4 of it ([KB92b] uses
-        the current length: erratum D6), and, between measured steps, its own curves. Its
-        toe-off is moved to that of ``walk``.
+        the current length: erratum D6), and, between measured steps or where the sides
+        differ, its own curves. Its toe-off is moved to that of ``walk``.
         """
         phase = walk.hip.times[walk.hip.times <= walk.toe_off]
         length = walk.previous_length
-        if len(self._prototypes) == 1:
+        if self._alike:
             return _late(walk, len(phase), mu(walk.character, walk.body, length))
-        before = self.walk_data(walk.body, length, length)
+        before = self.walk_data(walk.body, length, length, side=1 - side)
         at = 1.0 + phase * (before.toe_off / walk.toe_off)
         return before.foot2.at(at)[:, 0], before.meta.at(at)[:, 0]
 
@@ -131,15 +146,15 @@ class KinematicWalk:
         if request.kind == "stop":
             return self._stop(body, request)
         previous = request.previous_length
-        walk = self.walk_data(body, previous, request.length, request.hip_height)
-        return _sagittal(walk, *self._rear(walk), previous=previous)
+        walk = self.walk_data(body, previous, request.length, request.hip_height, request.side)
+        return _sagittal(walk, *self._rear(walk, request.side), previous=previous)
 
     def _start(self, body: Body, request: StepRequest) -> SagittalStep:
         """From standing: the first foot leaves as in a walk with somewhat shorter steps."""
         length = request.length
         before = START_SHARE * length
         stand = standing_height(body) if request.hip_height is None else request.hip_height
-        walk = self.walk_data(body, before, length, stand)
+        walk = self.walk_data(body, before, length, stand, request.side)
         hip, ankle = np.array(walk.hip.values), np.array(walk.ankle.values)
         bounce, swing = _of_half_a_stride(walk)
         hip[:, 0] = affine(hip[:, 0], 0.0, hip[-1, 0])
@@ -149,7 +164,7 @@ class KinematicWalk:
         turn = walk.foot3.values[:, 0]
         turn = arc(walk.foot3.unit, turn, turn[0], turn[-1], swing)
         # the foot stands flat at first: take the part it would already have turned away
-        pitch, toes = self._rear(walk)
+        pitch, toes = self._rear(walk, request.side)
         fade = 1.0 - smoothstep(np.linspace(0.0, 1.0, len(pitch)))
         walk = walk.with_(
             hip=walk.hip.with_values(hip),
@@ -168,7 +183,9 @@ class KinematicWalk:
     def _stop(self, body: Body, request: StepRequest) -> SagittalStep:
         """To standing: the rear foot closes beside the other, which stays flat."""
         previous = request.previous_length
-        walk = self.walk_data(body, previous, START_SHARE * previous, request.hip_height)
+        walk = self.walk_data(
+            body, previous, START_SHARE * previous, request.hip_height, request.side
+        )
         hip, ankle = np.array(walk.hip.values), np.array(walk.ankle.values)
         hip[:, 0] = affine(hip[:, 0], hip[0, 0], 0.0)
         bounce, swing = _of_half_a_stride(walk)
@@ -178,7 +195,7 @@ class KinematicWalk:
         ankle[:, 1] = arc(walk.ankle.unit, ankle[:, 1], ankle[0, 1], end[1], swing)
         turn = walk.foot3.values[:, 0]
         turn = arc(walk.foot3.unit, turn, turn[0], 0.0, swing)
-        rear = self._rear(walk)
+        rear = self._rear(walk, request.side)
         walk = walk.with_(
             hip=walk.hip.with_values(hip),
             ankle=walk.ankle.with_values(ankle),
@@ -201,8 +218,13 @@ def standing_height(body: Body) -> float:
 
 
 def phase_grid(*events: float) -> Float[np.ndarray, "T"]:
-    """Phases from 0 to 1 that hold every event inside, nowhere coarser than 1/SAMPLES."""
-    marks = np.array(sorted({0.0, 1.0, *(e for e in events if 0.0 < e < 1.0)}))
+    """Phases from 0 to 1 that hold every event inside, nowhere coarser than 1/SAMPLES.
+
+    One more beside each end: the hips' speed changes fast about a heel strike, and steps are
+    joined by the speeds read there.
+    """
+    near = 0.4 / SAMPLES
+    marks = np.array(sorted({0.0, near, 1.0 - near, 1.0, *(e for e in events if 0.0 < e < 1.0)}))
     pieces = [
         np.linspace(a, b, max(2, int(np.ceil((b - a) * SAMPLES)) + 1))[:-1]
         for a, b in pairwise(marks)
@@ -267,6 +289,8 @@ def _sagittal(
     bend = np.where(pitch < 0.0, -pitch - meta, 0.0)
     swing = (phase[rear:] - walk.toe_off) / (1.0 - walk.toe_off)
     bend[rear:, 1] = bend[rear - 1, 1] * (1.0 - smoothstep(swing / TOES_STRAIGHT))
+    # toes that land first lie flat as they do
+    bend[rear:, 1] += max(-float(pitch[-1, 1]), 0.0) * smoothstep((swing - 0.5) / 0.5)
     ankle = rolled_ankle(foot, pitch, meta)
     ankle[:, 1, 0] -= previous
     ankle[rear:, 1] = walk.ankle.values[1:]
