@@ -24,11 +24,13 @@ if TYPE_CHECKING:
     from gaitsmith.gait.cycle import Cycle
     from gaitsmith.ground import GROUNDS, Ground
     from gaitsmith.io import load
+    from gaitsmith.learning import learn
     from gaitsmith.motion.motion import Labels, Markers, Motion
     from gaitsmith.motion.skeleton import Skeleton
     from gaitsmith.pipeline import regenerate, save, save_all, walk
     from gaitsmith.synthesis.upper_body import Manner
     from gaitsmith.walks import WALKS, StraightWalk
+    from gaitsmith.walks.learned import LearnedGait
 
 #: Where each public name lives. They load when first asked for, so that importing the package
 #: and asking the command line for help cost nothing.
@@ -47,6 +49,8 @@ _HOMES = {
     "InfeasibleError": "errors",
     "InvalidInputError": "errors",
     "Labels": "motion.motion",
+    "learn": "learning",
+    "LearnedGait": "walks.learned",
     "load": "io",
     "Manner": "synthesis.upper_body",
     "Markers": "motion.motion",
@@ -75,6 +79,8 @@ __all__ = [
     "InfeasibleError",
     "InvalidInputError",
     "Labels",
+    "learn",
+    "LearnedGait",
     "load",
     "Manner",
     "Markers",

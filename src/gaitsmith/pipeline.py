@@ -14,12 +14,11 @@ from gaitsmith import io
 from gaitsmith._checks import number, one_of, positive
 from gaitsmith._version import __version__
 from gaitsmith.body.files import body_from_dict, body_to_dict
-from gaitsmith.body.presets import body_from
-from gaitsmith.errors import GaitsmithWarning, InvalidInputError, UnknownNameError
+from gaitsmith.errors import GaitsmithWarning, InvalidInputError
 from gaitsmith.ground import GROUNDS
-from gaitsmith.plan.pace import UNUSUAL_FROUDE, choose_pace, froude
+from gaitsmith.learning import body_of, gait_from
+from gaitsmith.plan.pace import UNUSUAL_FROUDE, Pace, choose_pace, froude
 from gaitsmith.plan.straight import Stance, plan_straight
-from gaitsmith.synthesis.gaits import GAITS
 from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
 from gaitsmith.synthesis.straight import StraightGenerator
@@ -33,6 +32,8 @@ if TYPE_CHECKING:
     from gaitsmith.body.body import Body
     from gaitsmith.motion.motion import Motion
     from gaitsmith.plan.footsteps import StepPlan
+    from gaitsmith.synthesis.gaits import Habits
+    from gaitsmith.walks.learned import LearnedGait
 
 #: Step width over stature: 0.10 m for 1.75 m. People walk with 0.06-0.14 m; 0.13 leg lengths
 #: is preferred on a treadmill (Donelan, Kram & Kuo 2001).
@@ -68,14 +69,14 @@ def walk(
     *,
     distance: float,
     body: str | float | Path | Body = 1.75,
-    gait: str = "winter",
+    gait: str | Path | LearnedGait | dict[str, Any] = "neutral",
     step_length: float | None = None,
     cadence: float | None = None,
     speed: float | None = None,
     start: str = "stand",
     stop: str = "stand",
     step_width: float | None = None,
-    toe_out: float = TOE_OUT,
+    toe_out: float | tuple[float, float] | None = None,
     manner: Manner | None = None,
     fps: float = 60.0,
     seed: int = 0,
@@ -87,9 +88,11 @@ def walk(
     distance
         Meters from the first to the last point of the path.
     body
-        Height in meters, name of a built-in body, ``.toml`` file of measures, or a Body.
+        Height in meters, name of a built-in body, ``.toml`` file of measures, a clip (whose
+        rig has the lengths), or a Body.
     gait
-        Name of a built-in walk (``gaitsmith list gaits``).
+        Name of a built-in gait (``gaitsmith list gaits``), a ``.gait.json`` file, a clip to learn
+        from, or what :func:`gaitsmith.learn` returned.
     step_length, cadence, speed
         Meters, steps per minute, meters per second. Any two fix the third, one is completed
         as people do, none is the body's preferred pace; see
@@ -98,10 +101,11 @@ def walk(
         ``"stand"`` (feet side by side on the end of the path) or ``"walk"`` (mid-walk, from
         heel strike to heel strike).
     step_width
-        Meters between left and right footsteps, measured across; None: 0.057 of the height.
-        From 0.05 of the height (at least 0.066 m) to half the leg.
+        Meters between left and right footsteps, measured across; None: the gait's own, else
+        0.057 of the height. From 0.05 of the height (at least 0.066 m) to half the leg.
     toe_out
-        Radians that each foot turns out, -5 to 30 deg.
+        Radians that the feet, or [left, right], turn out, -5 to 30 deg; None: the gait's own,
+        else 6 deg.
     manner
         Sizes of the rules above the legs of a gait that has no upper body of its own
         (``winter``); ``Manner(pelvis=False)`` switches a layer off.
@@ -133,24 +137,29 @@ def walk(
     >>> motion.labels.footstep_position[-1, 2].round(6)
     np.float64(3.0)
     """
-    who = body_from(body)
+    who = body_of(body)
     distance = positive("distance", distance, "meters")
     fps = positive("fps", fps, "frames per second")
     if not SLOWEST_FPS <= fps <= FASTEST_FPS:
         raise InvalidInputError(
             f"fps must be from {SLOWEST_FPS:g} to {FASTEST_FPS:g} frames per second, got {fps:g}"
         )
-    if gait not in GAITS:
-        raise UnknownNameError("gait", gait, GAITS)
     one_of("start", start, ("stand", "walk"))
     one_of("stop", stop, ("stand", "walk"))
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InvalidInputError(f"seed must be a whole number, 0 or more, got {seed!r}")
     manner = manner or Manner()
-    stance = _stance(who, step_width, toe_out)
+    style, named = gait_from(gait, manner)
+    stance = _stance(who, step_width, toe_out, style.habits)
     if step_length is not None:
         check_step_length(who, positive("step_length", step_length, "meters"))
-    pace = choose_pace(who, step_length=step_length, cadence=cadence, speed=speed)
+    pace = choose_pace(
+        who,
+        step_length=step_length,
+        cadence=cadence,
+        speed=speed,
+        usual=None if style.habits is None else _own_pace(who, style.habits),
+    )
     check_step_length(who, pace.step_length)
     _warn_of_unusual(who, pace.step_length, pace.speed)
     recipe = {
@@ -158,7 +167,7 @@ def walk(
         "walk": {
             "distance": distance,
             "body": body_to_dict(who),
-            "gait": gait,
+            "gait": named,
             "step_length": step_length,
             "cadence": cadence,
             "speed": speed,
@@ -177,28 +186,70 @@ def walk(
     )
     if step_length is not None:
         _warn_of_short_steps(plan, step_length)
-    style = GAITS[gait](manner)
     generator = StraightGenerator(style.walk, ground, style.overlay)
     prepared = prepare_walk(plan, generator, who, ground, rest=REST)
     return sample_walk(prepared, who, ground, fps=fps, recipe=recipe)
 
 
-def _stance(body: Body, step_width: float | None, toe_out: float) -> Stance:
+def _own_pace(body: Body, habits: Habits) -> Pace:
+    """The pace of who was measured at the size of ``body``: equal Froude numbers."""
+    return Pace(
+        step_length=habits.step_length * body.leg_length,
+        cadence=habits.cadence * float(np.sqrt(habits.leg_length / body.leg_length)),
+    )
+
+
+def _stance(
+    body: Body,
+    step_width: float | None,
+    toe_out: float | tuple[float, float] | None,
+    habits: Habits | None,
+) -> Stance:
     narrow = max(NARROWEST_STEP * body.height, NARROWEST)
     wide = WIDEST_STEP * body.leg_length
-    usual = max(STEP_WIDTH * body.height, narrow)
-    width = positive("step_width", usual if step_width is None else step_width, "meters")
-    if not narrow <= width <= wide:
-        raise InvalidInputError(
-            f"step_width must be from {narrow:.3f} to {wide:.3f} m for this body, got {width!r} m"
+    if step_width is not None:
+        width = positive("step_width", step_width, "meters")
+        if not narrow <= width <= wide:
+            raise InvalidInputError(
+                f"step_width must be from {narrow:.3f} to {wide:.3f} m for this body, "
+                f"got {width!r} m"
+            )
+    elif habits is None:
+        width = max(STEP_WIDTH * body.height, narrow)
+    else:
+        width = _kept("step width", habits.step_width * body.leg_length, narrow, wide, "m")
+    least, most = -LARGEST_TOE_IN, LARGEST_TOE_OUT
+    if toe_out is None and habits is not None:
+        left, right = (
+            np.radians(_kept("toe-out", float(d), np.degrees(least), np.degrees(most), "deg"))
+            for d in np.degrees(habits.toe_out)
         )
-    toe_out = number("toe_out", toe_out, "radians")
-    if not -LARGEST_TOE_IN <= toe_out <= LARGEST_TOE_OUT:
-        raise InvalidInputError(
-            f"toe_out must be from {-np.degrees(LARGEST_TOE_IN):g} to "
-            f"{np.degrees(LARGEST_TOE_OUT):g} deg, got {np.degrees(toe_out):.1f} deg"
+        return Stance(width, (float(left), float(right)))
+    both = TOE_OUT if toe_out is None else toe_out
+    pair = both if isinstance(both, tuple | list) else (both, both)
+    if len(pair) != 2:
+        raise InvalidInputError(f"toe_out must be one angle or [left, right], got {both!r}")
+    left, right = (number("toe_out", angle, "radians") for angle in pair)
+    for angle in (left, right):
+        if not least <= angle <= most:
+            raise InvalidInputError(
+                f"toe_out must be from {np.degrees(least):g} to {np.degrees(most):g} deg, got "
+                f"{np.degrees(angle):.1f} deg"
+            )
+    return Stance(width, (left, right))
+
+
+def _kept(what: str, value: float, least: float, most: float, unit: str) -> float:
+    """``value`` of a gait within the limits that keep feet apart; says so where it was not."""
+    kept = min(max(value, least), most)
+    if abs(kept - value) > 0.02 * (most - least):
+        warnings.warn(
+            f"the gait's own {what} of {value:.3g} {unit} is not walked: {kept:.3g} {unit} keeps "
+            "the feet apart",
+            GaitsmithWarning,
+            stacklevel=4,
         )
-    return Stance(width, toe_out)
+    return kept
 
 
 def _warn_of_unusual(body: Body, step_length: float, speed: float) -> None:
@@ -256,6 +307,8 @@ def regenerate(recipe: Motion | str | dict[str, Any]) -> Motion:
     try:
         arguments["body"] = body_from_dict(arguments["body"])
         arguments["manner"] = Manner(**arguments["manner"])
+        if isinstance(arguments["toe_out"], list):
+            arguments["toe_out"] = tuple(arguments["toe_out"])
         return walk(**arguments)
     except (KeyError, TypeError) as error:
         raise InvalidInputError(f"not a recipe of a walk: {error}") from None

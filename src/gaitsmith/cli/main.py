@@ -10,6 +10,7 @@ import typer
 from gaitsmith._version import __version__
 from gaitsmith.cli.convert import convert
 from gaitsmith.cli.demo import demo
+from gaitsmith.cli.learn import learn
 from gaitsmith.cli.listing import listing
 from gaitsmith.cli.walk import walk
 from gaitsmith.errors import GaitsmithError, InvalidInputError
@@ -24,6 +25,7 @@ app = typer.Typer(
 )
 app.command()(demo)
 app.command()(walk)
+app.command()(learn)
 app.command()(convert)
 app.command("list")(listing)
 

@@ -28,9 +28,11 @@ def walk(
     ],
     distance: Annotated[float, typer.Option(help="How far to walk, straight ahead, meters.")],
     body: Annotated[
-        str, typer.Option(help="Height in meters, a name of `list bodies`, or FILE.toml.")
+        str, typer.Option(help="Height in meters, a name of `list bodies`, FILE.toml or FILE.bvh.")
     ] = "1.75",
-    gait: Annotated[str, typer.Option(help="A name of `list gaits`.")] = "winter",
+    gait: Annotated[
+        str, typer.Option(help="A name of `list gaits`, FILE.gait.json, or a clip to learn from.")
+    ] = "neutral",
     step_length: Annotated[float | None, typer.Option(help="Meters.")] = None,
     speed: Annotated[float | None, typer.Option(help="Meters per second.")] = None,
     cadence: Annotated[float | None, typer.Option(help="Steps per minute.")] = None,
@@ -39,7 +41,9 @@ def walk(
     step_width: Annotated[
         float | None, typer.Option(help="Meters between left and right feet.")
     ] = None,
-    toe_out: Annotated[float, typer.Option(help="Degrees that each foot turns out.")] = 6.0,
+    toe_out: Annotated[
+        float | None, typer.Option(help="Degrees that each foot turns out; else the gait's own.")
+    ] = None,
     fps: Annotated[float, typer.Option(help="Frames per second.")] = 60.0,
     seed: Annotated[int, typer.Option(help="Seed of what is random; recorded.")] = 0,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -60,7 +64,7 @@ def walk(
             start=start,
             stop=stop,
             step_width=step_width,
-            toe_out=math.radians(toe_out),
+            toe_out=None if toe_out is None else math.radians(toe_out),
             fps=fps,
             seed=seed,
         )

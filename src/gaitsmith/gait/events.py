@@ -165,9 +165,7 @@ def _blocks(slow: Float[np.ndarray, "n"], rate: float) -> list[tuple[int, int]]:
             joined[-1] = (joined[-1][0], b)
         else:
             joined.append((a, b))
-    return [
-        (a, b) for a, b in joined if b - a >= _SHORTEST * rate or a == 0 or b == len(slow)
-    ]
+    return [(a, b) for a, b in joined if b - a >= _SHORTEST * rate or a == 0 or b == len(slow)]
 
 
 def _events_of_block(

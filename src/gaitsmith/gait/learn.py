@@ -211,6 +211,14 @@ def _with_heel(
     return replace(body, foot=replace(foot, heel=heel))
 
 
+def body_in(person: Person) -> Body:
+    """The body of ``person``, its heels as long as those that it lands on if it walks."""
+    try:
+        return _prepared(person, None, []).body
+    except InfeasibleError:
+        return person.body
+
+
 def walking_speed(motion: Motion) -> float:
     """Speed of the walking in ``motion``, m/s: standing before and after does not count."""
     way = motion.root_position[:, [0, 2]]

@@ -155,9 +155,7 @@ def _foot_of(rig: Rig, usual: Body) -> tuple[Foot, float]:
     return Foot(height, heel / (ball + toes) * (front + tip), front, tip), floor
 
 
-def _moved(
-    rig: Rig, frames: dict[str, Float[np.ndarray, "4"]], body: Body, floor: float
-) -> Motion:
+def _moved(rig: Rig, frames: dict[str, Float[np.ndarray, "4"]], body: Body, floor: float) -> Motion:
     """The clip's pose on the body's skeleton, joint by joint from the hips outward."""
     skeleton = skeleton_of(body)
     count = len(rig.motion)

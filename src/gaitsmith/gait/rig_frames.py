@@ -241,10 +241,7 @@ def still_frames(rig: Rig, side: str) -> Bool[np.ndarray, "F"]:
     """Frames in which a foot stands still, low and as flat as it gets."""
     roles = [r for r in (f"{side}Foot", f"{side}Toes") if r in rig.joints]
     speed = np.max(
-        [
-            np.linalg.norm(np.gradient(rig.at(r), axis=0), axis=-1) * rig.motion.fps
-            for r in roles
-        ],
+        [np.linalg.norm(np.gradient(rig.at(r), axis=0), axis=-1) * rig.motion.fps for r in roles],
         axis=0,
     )
     low = rig.at(roles[-1])[:, 1]

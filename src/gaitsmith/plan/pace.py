@@ -60,11 +60,10 @@ def walk_ratio(body: Body) -> float:
 def preferred_pace(body: Body) -> Pace:
     """The pace ``body`` takes when nothing is asked for."""
     speed = float(np.sqrt(PREFERRED_FROUDE * GRAVITY * body.hip_height))
-    return _by_walk_ratio(body, speed)
+    return _by_walk_ratio(walk_ratio(body), speed)
 
 
-def _by_walk_ratio(body: Body, speed: float) -> Pace:
-    ratio = walk_ratio(body)
+def _by_walk_ratio(ratio: float, speed: float) -> Pace:
     return Pace(float(np.sqrt(60.0 * speed * ratio)), float(np.sqrt(60.0 * speed / ratio)))
 
 
@@ -74,10 +73,12 @@ def choose_pace(
     step_length: float | None = None,
     cadence: float | None = None,
     speed: float | None = None,
+    usual: Pace | None = None,
 ) -> Pace:
     """The pace that fits what was asked for.
 
-    Nothing: the preferred pace. Speed alone: the walk-ratio law. Step length alone: the
+    ``usual`` is the pace of a gait that has one: it then is the preferred one, and its walk
+    ratio is the law's. Nothing: the preferred pace. Speed alone: the walk-ratio law. Step length alone: the
     cadence goes with the square root of the length, for short steps are quick ones, between
     the constant cadence and the constant walk ratio. Cadence alone: the preferred step length.
     Two: the third follows. Three: they must agree within 1 %.
@@ -98,9 +99,10 @@ def choose_pace(
         )
         if value is not None
     }
-    usual = preferred_pace(body)
+    ratio = walk_ratio(body) if usual is None else usual.step_length / usual.cadence
+    usual = preferred_pace(body) if usual is None else usual
     if set(given) == {"speed"}:
-        pace = _by_walk_ratio(body, given["speed"])
+        pace = _by_walk_ratio(ratio, given["speed"])
     elif set(given) == {"step_length"}:
         length = given["step_length"]
         pace = Pace(length, usual.cadence * float(np.sqrt(length / usual.step_length)))

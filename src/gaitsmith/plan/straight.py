@@ -37,10 +37,18 @@ PATH_SPACING = 0.02
 
 @dataclass(frozen=True)
 class Stance:
-    """How the feet are set: ``width`` between their N across the walk (m), ``toe_out`` (rad)."""
+    """How the feet are set.
+
+    Attributes
+    ----------
+    width
+        Between their N across the walk, meters.
+    toe_out
+        Radians that [left, right] feet turn out.
+    """
 
     width: float
-    toe_out: float
+    toe_out: tuple[float, float]
 
 
 def stride_lengths(distance: float, length: float, start: str, stop: str) -> list[float]:
@@ -138,7 +146,7 @@ def plan_straight(
     return StepPlan(
         side=side,
         position=position,
-        heading=heading + SIDE_SIGN[side] * stance.toe_out,
+        heading=heading + SIDE_SIGN[side] * np.array(stance.toe_out)[side],
         direction=np.full(len(along), heading),
         time=time,
         kinds=tuple(kinds),

@@ -1,4 +1,4 @@
-"""Ways of walking by name: legs and what is above them."""
+"""Ways of walking: legs, what is above them, and the pace and stance that belong to them."""
 
 from __future__ import annotations
 
@@ -15,28 +15,69 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from gaitsmith.synthesis.overlay import Overlayer
+    from gaitsmith.walks.learned import LearnedGait
     from gaitsmith.walks.model import StraightWalk
 
 
 @dataclass(frozen=True)
+class Habits:
+    """Pace and stance of a measured person, for a body of any size.
+
+    Attributes
+    ----------
+    step_length
+        Over leg length (hip to ankle).
+    cadence
+        Steps per minute of who was measured, whose leg is ``leg_length`` meters: others keep
+        the Froude number.
+    step_width
+        Over leg length, between the lines of left and right feet.
+    toe_out
+        Radians of [left, right].
+    """
+
+    step_length: float
+    cadence: float
+    leg_length: float
+    step_width: float
+    toe_out: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class Gait:
-    """A straight walk and the overlay that rides on it."""
+    """A straight walk, the overlay that rides on it, and the habits that go with it if any."""
 
     walk: StraightWalk
     overlay: Overlayer
+    habits: Habits | None = None
 
 
 def neutral(_: Manner | None = None) -> Gait:
     """A measured man's whole body, made symmetric, his arms relaxed [Rajagopal 2016]."""
-    cycle = neutral_cycle()
-    body = subject()
-    pair = walk_data_of(cycle, body)
-    return Gait(KinematicWalk([pair]), CycleOverlay(cycle, body.leg_length))
+    cycle, body = neutral_cycle(), subject()
+    return Gait(KinematicWalk([walk_data_of(cycle, body)]), CycleOverlay(cycle, body.leg_length))
 
 
 def winter_rules(manner: Manner | None = None) -> Gait:
     """The measured legs of [KB92b]'s subject, everything above by published rules."""
     return Gait(winter(), RuleOverlay(manner))
+
+
+def learned(gait: LearnedGait, manner: Manner | None = None) -> Gait:
+    """The way of walking that was learned from a clip."""
+    leg = gait.body.leg_length
+    measured = gait.upper_body == "measured"
+    return Gait(
+        walk=KinematicWalk([gait.walk_data]),
+        overlay=CycleOverlay(gait.cycle, leg) if measured else RuleOverlay(manner),
+        habits=Habits(
+            step_length=0.5 * sum(gait.step_lengths) / leg,
+            cadence=gait.cadence,
+            leg_length=leg,
+            step_width=gait.step_width / leg,
+            toe_out=gait.toe_out,
+        ),
+    )
 
 
 #: Built-in gaits by the name the command line uses.

@@ -21,17 +21,14 @@ FORMAT = "gaitsmith-walk-data-1"
 _DIGITS = 7
 
 
-def write_walk_data(walk: WalkData, path: Path, *, source: str, step_time: float) -> None:
-    """Write ``walk`` as JSON: meters, radians, step-normalised time; ``step_time`` in seconds."""
+def walk_data_to_dict(walk: WalkData) -> dict[str, Any]:
+    """``walk`` as plain JSON: meters, radians, step-normalised time, rounded."""
 
     def rounded(value: Any) -> Any:
         return np.round(np.asarray(value), _DIGITS).tolist()
 
     events = ("flat", "heel_off", "meta_off", "toe_off")
-    data: dict[str, Any] = {
-        "format": FORMAT,
-        "source": source,
-        "step_time": round(step_time, _DIGITS),
+    return {
         "previous_length": rounded(walk.previous_length),
         "length": rounded(walk.length),
         "character": {k: rounded(v) for k, v in asdict(walk.character).items()},
@@ -41,6 +38,34 @@ def write_walk_data(walk: WalkData, path: Path, *, source: str, step_time: float
             name: {"times": rounded(s.times), "values": rounded(s.values)}
             for name, s in walk.sequences.items()
         },
+    }
+
+
+def walk_data_from_dict(data: dict[str, Any]) -> WalkData:
+    """The walk data that :func:`walk_data_to_dict` wrote; KeyError, TypeError if it is none."""
+    character = dict(data["character"])
+    for name in ("gains", "hip"):
+        if name in character:
+            character[name] = tuple(character[name])
+    fields: dict[str, Any] = dict(data["events"])
+    for name, s in data["sequences"].items():
+        fields[name] = TimedSequence(np.array(s["times"]), np.array(s["values"]))
+    return WalkData(
+        body=body_from_dict(data["body"]),
+        previous_length=data["previous_length"],
+        length=data["length"],
+        character=Character(**character),
+        **fields,
+    )
+
+
+def write_walk_data(walk: WalkData, path: Path, *, source: str, step_time: float) -> None:
+    """Write ``walk`` as JSON: meters, radians, step-normalised time; ``step_time`` in seconds."""
+    data: dict[str, Any] = {
+        "format": FORMAT,
+        "source": source,
+        "step_time": round(step_time, _DIGITS),
+        **walk_data_to_dict(walk),
     }
     lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in data.items()]
     path.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8", newline="\n")
@@ -57,20 +82,7 @@ def walk_data_from_json(text: str, path: object = "walk data") -> WalkData:
         data = json.loads(text)
         if data["format"] != FORMAT:
             raise FileFormatError(path, f"format is {data['format']!r}, not {FORMAT!r}")
-        character = dict(data["character"])
-        for name in ("gains", "hip"):
-            if name in character:
-                character[name] = tuple(character[name])
-        fields: dict[str, Any] = dict(data["events"])
-        for name, s in data["sequences"].items():
-            fields[name] = TimedSequence(np.array(s["times"]), np.array(s["values"]))
-        return WalkData(
-            body=body_from_dict(data["body"]),
-            previous_length=data["previous_length"],
-            length=data["length"],
-            character=Character(**character),
-            **fields,
-        )
+        return walk_data_from_dict(data)
     except (json.JSONDecodeError, KeyError, TypeError) as error:
         raise FileFormatError(path, f"not walk data: {error}") from None
 

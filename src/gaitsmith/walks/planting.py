@@ -159,9 +159,7 @@ def _stance(seen: _Measured, side: int, last: float) -> tuple[np.ndarray, np.nda
     return order, seen.own[order, side] <= last
 
 
-def _marks(
-    seen: _Measured, events: Float[np.ndarray, "4"], side: int
-) -> Float[np.ndarray, "5"]:
+def _marks(seen: _Measured, events: Float[np.ndarray, "4"], side: int) -> Float[np.ndarray, "5"]:
     """Own phases at which the sole is level, rises, stands on its tip and leaves."""
     toe_off = float((events[3] - events[0]) % 1.0) - SLIDES
     order, stands = _stance(seen, side, toe_off)
@@ -189,9 +187,7 @@ def _has_toes(seen: _Measured, side: int) -> bool:
     return float(np.ptp(seen.toes[:, side] - seen.pitch[:, side])) > np.radians(5.0)
 
 
-def _pitch(
-    seen: _Measured, marks: Float[np.ndarray, "5"], side: int
-) -> Float[np.ndarray, "N"]:
+def _pitch(seen: _Measured, marks: Float[np.ndarray, "5"], side: int) -> Float[np.ndarray, "N"]:
     """Measured pitch as a planted sole can show it: down to level, level, rising."""
     flat, heel_off, _, toe_off, _ = marks
     out = np.array(seen.pitch[:, side])
@@ -357,9 +353,7 @@ class _Fit:
             slope = sign * (self._angles(center, *nudged) - now) / tiny * weight
             for side in (0, 1):
                 column = 2 * kind + side
-                blocks[:, side, :, column] = (
-                    slope[:, side, :, None] * self.basis[:, None, :]
-                )
+                blocks[:, side, :, column] = slope[:, side, :, None] * self.basis[:, None, :]
         jacobian = [blocks.reshape(SAMPLES * 6, 6 * SPLINES)]
         bend = np.eye(SPLINES) - 0.5 * np.roll(np.eye(SPLINES), 1, 0)
         bend -= 0.5 * np.roll(np.eye(SPLINES), -1, 0)

@@ -1,0 +1,210 @@
+"""Clips and gait files to ways of walking: what ``learn`` and ``--gait`` do."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gaitsmith import io
+from gaitsmith.body.presets import body_from
+from gaitsmith.conventions import SIDES
+from gaitsmith.errors import (
+    FileFormatError,
+    InvalidInputError,
+    UnknownFormatError,
+    UnknownNameError,
+)
+from gaitsmith.gait.cycle import EVENTS
+from gaitsmith.gait.events import Stance
+from gaitsmith.motion.motion import Markers, Motion
+from gaitsmith.synthesis.gaits import GAITS, Gait, learned
+from gaitsmith.walks.learned import SUFFIX, LearnedGait, gait_from_dict, learned_gait, read_gait
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.synthesis.upper_body import Manner
+
+#: Suffixes of clips that can be learned from.
+CLIPS = (*(s for s in io.READERS if s != ".npz"), ".npz", *io.MARKER_READERS)
+#: Joints without which the upper body moves by rule.
+_ARMS = frozenset(f"{side}{part}" for side in SIDES for part in ("UpperArm", "LowerArm", "Hand"))
+
+
+def learn(
+    clip: str | Path | Motion | Markers,
+    *,
+    name: str | None = None,
+    symmetric: bool = False,
+    events: Sequence[Stance] | None = None,
+    unit: str | None = None,
+    height: float | None = None,
+    source: str | None = None,
+    license: str = "",
+) -> LearnedGait:
+    """The gait of the person who walks in ``clip``.
+
+    Parameters
+    ----------
+    clip
+        A file (``.bvh``, ``.amc``, ``.npz``; markers in ``.trc``, ``.csv``), a Motion or Markers.
+    name
+        What to call the gait; the file's name if not given.
+    symmetric
+        Make left and right mirror images of each other.
+    events
+        Stances to use instead of those found, seconds of the clip.
+    unit
+        Of a BVH or AMC, see :func:`gaitsmith.io.bvh_motion.read_bvh`.
+    height
+        Stature of who wears the markers, meters; else the markers tell.
+    source, license
+        Where the clip comes from and what may be done with it; kept in the gait.
+
+    Raises
+    ------
+    InfeasibleError
+        If the clip shows no 1.6 strides of straight, forward walking (markers with events: one
+        stride), or if it is running.
+    FileFormatError, OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> motion = walk(distance=6.0, fps=60)  # doctest: +SKIP
+    >>> learn(motion, name="again").step_width  # doctest: +SKIP
+    """
+    file = ""
+    if isinstance(clip, str | Path):
+        path = Path(clip)
+        file, clip = path.name, load_clip(path, unit)
+    title = name or Path(file).stem or "learned"
+    if isinstance(clip, Markers):
+        from gaitsmith.gait.marker_legs import learn_from_markers
+
+        found = learn_from_markers(
+            clip,
+            height=height,
+            symmetric=symmetric,
+            events=events,
+            source=file if source is None else source,
+            license=license,
+        )
+        return learned_gait(found, name=title, clip=file, upper_body="rules")
+    from gaitsmith.gait.learn import learn_cycle
+    from gaitsmith.gait.person import person_of
+
+    person = person_of(clip, name=title)
+    found = learn_cycle(
+        person,
+        symmetric=symmetric,
+        events=events,
+        source=file if source is None else source,
+        license=license,
+    )
+    whole = _ARMS <= set(person.roles)
+    return learned_gait(found, name=title, clip=file, upper_body="measured" if whole else "rules")
+
+
+def load_clip(path: Path, unit: str | None = None) -> Motion | Markers:
+    """What is in a clip's file, a motion or markers."""
+    suffix = path.suffix.lower()
+    if suffix == ".bvh":
+        from gaitsmith.io.bvh_motion import read_bvh
+
+        return read_bvh(path, unit)
+    if suffix == ".amc":
+        from gaitsmith.io.amc import read_amc
+
+        return read_amc(path, unit=unit)
+    if unit is not None:
+        raise InvalidInputError("unit is of BVH and AMC files")
+    if suffix in io.MARKER_READERS:
+        return io.load_markers(path)
+    if suffix in io.READERS:
+        return io.load(path)
+    raise UnknownFormatError(path.suffix, CLIPS, verb="learn from")
+
+
+def gait_from(
+    spec: str | Path | LearnedGait | dict[str, Any], manner: Manner | None = None
+) -> tuple[Gait, str | dict[str, Any]]:
+    """The way of walking that ``--gait`` means, and how a recipe names it.
+
+    ``spec`` is the name of a built-in gait, a ``.gait.json`` file, a clip to learn from, a
+    learned gait, or what a recipe has in its place.
+    """
+    from gaitsmith.walks.learned import gait_to_dict
+
+    if isinstance(spec, dict):
+        try:
+            spec = gait_from_dict(spec)
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise InvalidInputError(f"not a gait: {error}") from None
+    if isinstance(spec, str | Path):
+        text = str(spec)
+        if text in GAITS:
+            return GAITS[text](manner), text
+        path = Path(text)
+        if text.lower().endswith((SUFFIX, ".json")):
+            spec = read_gait(path)
+        elif path.suffix and path.suffix.lower() in CLIPS:
+            spec = learn(path)
+        elif path.suffix:
+            raise UnknownFormatError(path.suffix, (SUFFIX, *CLIPS), verb="take a gait from")
+        else:
+            raise UnknownNameError("gait (name, .gait.json file or clip)", text, GAITS)
+    return learned(spec, manner), gait_to_dict(spec)
+
+
+def body_of(spec: str | float | Path | Body) -> Body:
+    """The body that ``--body`` means: as :func:`gaitsmith.body.presets.body_from`, or a clip's."""
+    if isinstance(spec, str | Path) and Path(spec).suffix.lower() in io.READERS:
+        from gaitsmith.gait.learn import body_in
+        from gaitsmith.gait.person import person_of
+
+        path = Path(spec)
+        clip = load_clip(path)
+        assert isinstance(clip, Motion)
+        return body_in(person_of(clip, name=path.stem))
+    return body_from(spec)
+
+
+def read_events(path: str | Path) -> list[Stance]:
+    """Stances in a CSV: ``side,heel_strike,foot_flat,heel_off,toe_off``, seconds of the clip."""
+    path = Path(path)
+    try:
+        rows = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
+    except UnicodeDecodeError as error:
+        raise FileFormatError(path, f"not text: {error}") from None
+    except csv.Error as error:
+        raise FileFormatError(path, f"not a CSV: {error}") from None
+    head = [cell.strip().lower() for cell in rows[0]] if rows else []
+    if head != ["side", *EVENTS]:
+        raise FileFormatError(path, f"the first line must be side,{','.join(EVENTS)}", line=1)
+    out: list[Stance] = []
+    for line, row in enumerate(rows[1:], start=2):
+        if not row:
+            continue
+        side = row[0].strip().lower()
+        side = {"l": "left", "r": "right"}.get(side, side)
+        try:
+            times = [float(cell) for cell in row[1:]]
+        except ValueError as error:
+            raise FileFormatError(path, str(error), line=line) from None
+        good = len(times) == len(EVENTS) and all(
+            a <= b for a, b in zip(times, times[1:], strict=False)
+        )
+        if side not in SIDES or not good or not all(-1e6 < t < 1e6 for t in times):
+            raise FileFormatError(
+                path,
+                "a stance is a side (left, right) and four times in order: heel strike, foot "
+                f"flat, heel off, toe-off; got {','.join(row)}",
+                line=line,
+            )
+        out.append(Stance(SIDES.index(side), *times))
+    if not out:
+        raise FileFormatError(path, "no stances")
+    return out
