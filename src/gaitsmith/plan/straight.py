@@ -44,11 +44,16 @@ class Stance:
     width
         Between their N across the walk, meters.
     toe_out
-        Radians that [left, right] feet turn out.
+        Radians that both feet, or [left, right], turn out; kept as a pair.
     """
 
     width: float
-    toe_out: tuple[float, float]
+    toe_out: float | tuple[float, float]
+
+    def __post_init__(self) -> None:
+        """Make a pair of one angle."""
+        if not isinstance(self.toe_out, tuple):
+            object.__setattr__(self, "toe_out", (self.toe_out, self.toe_out))
 
 
 def stride_lengths(distance: float, length: float, start: str, stop: str) -> list[float]:
