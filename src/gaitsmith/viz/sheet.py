@@ -63,7 +63,7 @@ def contact_sheet(
             raise InvalidInputError(
                 f"{name} must be a whole number from {low} to {high}, got {value!r}"
             )
-    tracks = tracks_of(motion, detail=1.5)
+    tracks = tracks_of(motion)
     unit = (width - 2 * _MARGIN) / 1520.0
     heights = {
         # figures of a row may just touch when they take long steps
@@ -128,7 +128,7 @@ def _header(canvas: Canvas, tracks: Tracks) -> None:
     motion, labels = tracks.motion, tracks.motion.labels
     speed = tracks.distance / motion.duration if motion.duration > 0 else 0.0
     facts = [f"{motion.duration:.2f} s", f"{tracks.distance:.2f} m", f"{speed:.2f} m/s"]
-    details = [f"{len(motion)} frames at {motion.fps:g} fps", f"body {tracks.figure.stature:.2f} m"]
+    details = [f"{len(motion)} frames at {motion.fps:g} fps", f"body {tracks.stature:.2f} m"]
     if labels is not None and len(labels.footstep_side) > 2:
         count = len(labels.footstep_side) - 2
         facts.insert(0, f"{count} step" + ("s" if count > 1 else ""))
