@@ -58,7 +58,7 @@ _LEG = np.array(
 def add_arm(
     cage: Cage, fit: Fit, side: int, opening: list[int], paints: tuple[int, int, int]
 ) -> None:
-    """Arm and hand of one side in the colours (limb, joint, hand), from the ``opening``."""
+    """Arm and hand of one side in the colours (limb, joint, skin), from the ``opening``."""
     word, sign = SIDES[side], float(SIDE_SIGN[side])
     joints = [f"{word}{name}" for name in ("UpperArm", "LowerArm", "Hand")]
     # right-handed (top, front, along) on the left; on the right, front is behind
@@ -81,7 +81,8 @@ def add_arm(
         else:
             weights = (1.0 - below) * fit.one(joints[1]) + below * fit.one(joints[2])
         ring = cage.ring(ring_around(point, frame, radii, 8, 0.96), weights)
-        cage.loft(above, ring, paints[1] if k in (5, 6) else paints[0])
+        # the shoulder's cap is of the trunk: sleeves in another colour would show its corners
+        cage.loft(above, ring, paints[2] if k == 0 else paints[1] if k in (5, 6) else paints[0])
         above = ring
     add_hand(cage, fit, side, bones, above, paints[2])
 

@@ -76,8 +76,8 @@ class SkinMesh:
 
     def pose(
         self, positions: Float[np.ndarray, "joints 3"], world: Float[np.ndarray, "joints 4"]
-    ) -> tuple[Float[np.ndarray, "vertices 3"], Float[np.ndarray, "faces 3 3"]]:
-        """World vertices (meters) and corner normals in one pose of the skeleton.
+    ) -> tuple[Float[np.ndarray, "vertices 3"], Float[np.ndarray, "vertices 3"]]:
+        """World vertices (meters) and unit normals in one pose of the skeleton.
 
         Linear blend skinning, as files and game engines do it.
 
@@ -89,21 +89,22 @@ class SkinMesh:
         """
         turn = to_matrix(world)
         shift = positions - np.einsum("jab,jb->ja", turn, self.rest)
-        # one product with all joints beats picking four of them for every vertex
-        mixed = self._shares @ np.concatenate([turn.reshape(-1, 9), shift], axis=1)
+        table = np.concatenate([turn.reshape(-1, 9), shift], axis=1)
+        mixed = self._shares[0][:, None] * table[self.joints[:, 0]]
+        for k in range(1, LIMIT):
+            mixed += self._shares[k][:, None] * table[self.joints[:, k]]
         x, y, z = (mixed[:, k:9:3] for k in range(3))
         at, up = self.vertices, self.normals
         vertices = x * at[:, :1] + y * at[:, 1:2] + z * at[:, 2:] + mixed[:, 9:]
         normals = x * up[:, :1] + y * up[:, 1:2] + z * up[:, 2:]
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-        return vertices, normals[self.faces]
+        return vertices, normals
 
     @cached_property
-    def _shares(self) -> Float[np.ndarray, "vertices joints"]:
-        """Weight of every joint at every vertex; they add up to 1 in double precision."""
-        out = np.zeros((len(self.vertices), len(self.rest)))
-        np.add.at(out, (np.arange(len(out))[:, None], self.joints), self.weights)
-        return out / out.sum(axis=1, keepdims=True)
+    def _shares(self) -> Float[np.ndarray, "4 vertices"]:
+        """The weights, which add up to 1 in double precision."""
+        weights = self.weights.T.astype(np.float64)
+        return weights / weights.sum(axis=0)
 
 
 def strongest(

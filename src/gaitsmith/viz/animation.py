@@ -226,7 +226,8 @@ class _Scene:
         level /= np.linalg.norm(level)
         sun = _SUN[0] * view.axes[0] + _SUN[1] * np.array([0.0, 1.0, 0.0]) + _SUN[2] * level
         ground = tracks.ground(*tracks.motion.root_position[frame, [0, 2]])
-        points = np.concatenate([vertices, vertices[tracks.figure.faces].mean(axis=1)])
+        a, b, c = (vertices[corner] for corner in tracks.figure.faces.T)
+        points = np.concatenate([vertices, (a + b + c) / 3.0])
         fallen = points - ((points[:, 1] - ground) / sun[1])[:, None] * sun
         # a coarse picture of dots, grown until they meet: it is blurred anyway
         wide, high = (size // _COARSE for size in image.size)
