@@ -16,7 +16,7 @@ from gaitsmith.skin.hand import fingers
 from gaitsmith.skin.limb_cage import add_arm, add_leg
 from gaitsmith.skin.measures import Measures
 from gaitsmith.skin.mesh import Paint, SkinMesh, split_corners, strongest, vertex_normals
-from gaitsmith.skin.shapes import ball, corner_normals
+from gaitsmith.skin.shapes import ball, corner_normals, skin
 from gaitsmith.skin.shoe import outsole, upper
 from gaitsmith.skin.t_pose import renamed
 from gaitsmith.skin.torso_cage import add_torso
@@ -40,6 +40,20 @@ PAINTS = (
 _WOOD, _PELVIS, _LIMBS, _JOINTS, _SHOES, _OUTSOLE = 0, 1, (2, 3), (4, 5), (6, 7), 8
 # How far from the ball the upper of a shoe begins and ends to bend, over its length.
 _BEND = 0.10
+# Rim of the nose of the standard figure from the bridge counter-clockwise; its tip and, in the
+# head, its back.
+_NOSE_RIM = np.array(
+    [
+        [0.0, 1.642, 0.100],
+        [-0.0085, 1.626, 0.099],
+        [-0.0165, 1.598, 0.102],
+        [0.0, 1.591, 0.106],
+        [0.0165, 1.598, 0.102],
+        [0.0085, 1.626, 0.099],
+    ]
+)
+_NOSE_TIP = np.array([0.0, 1.602, 0.127])
+_NOSE_ENDS = np.stack([[0.0, 1.612, 0.080], _NOSE_TIP])
 
 
 class _Pieces:
@@ -119,7 +133,7 @@ def build_skin(skeleton: Skeleton) -> SkinMesh:
         return _of_bones(skeleton, measures)
     fit, pieces = Fit(measures, rest), _Pieces()
     _add_body(pieces, fit)
-    _add_ears(pieces, fit)
+    _add_face(pieces, fit)
     for side, last in enumerate(measures.lasts):
         _add_fingers(pieces, fit, side)
         if last is not None:
@@ -154,11 +168,14 @@ def _triangles(
     return np.concatenate([first.T, second.T])
 
 
-def _add_ears(pieces: _Pieces, fit: Fit) -> None:
-    unit = fit.head
+def _add_face(pieces: _Pieces, fit: Fit) -> None:
+    """Ears, and a nose that shows where the head looks."""
+    rings = np.stack([_NOSE_RIM, 0.45 * _NOSE_RIM + 0.55 * _NOSE_TIP + [0.0, 0.0, 0.003]])
+    meshes = [skin(fit.trunk(rings.reshape(-1, 3)).reshape(rings.shape), *fit.trunk(_NOSE_ENDS))]
     for sign in SIDE_SIGN.tolist():
         center = fit.trunk(np.array([[sign * 0.0755, 1.628, -0.006]]))[0]
-        mesh = ball(center, np.array([0.010, 0.029, 0.018]) * unit, around=8, rings=4)
+        meshes.append(ball(center, np.array([0.010, 0.029, 0.018]) * fit.head, around=8, rings=4))
+    for mesh in meshes:
         share = np.tile(fit.one("head"), (len(mesh[0]), 1))
         pieces.add_creased(mesh, corner_normals(*mesh, crease=3.0), share, _WOOD)
 
@@ -168,9 +185,9 @@ def _add_fingers(pieces: _Pieces, fit: Fit, side: int) -> None:
     for points, faces in fingers(fit, side):
         corners = corner_normals(points, faces, crease=3.0)
         flat, old, normals = split_corners(faces, corners)
-        skin = strongest(np.tile(share, (len(old), 1)))
-        vertices, normals = fit.sculpt.unpose(points[old], normals, *skin)
-        pieces.add((vertices, flat), normals, skin, _WOOD)
+        carried = strongest(np.tile(share, (len(old), 1)))
+        vertices, normals = fit.sculpt.unpose(points[old], normals, *carried)
+        pieces.add((vertices, flat), normals, carried, _WOOD)
 
 
 def _add_shoe(pieces: _Pieces, fit: Fit, side: int, last: Last) -> None:

@@ -30,16 +30,16 @@ _PALM = np.array(
     ]
 )
 _PALM_WEIGHTS = (0.55, 0.95)
-# Rings of the thumb, from the wrist: meters along, toward the thumb's side, toward the palm;
-# radius. Its direction and its tip: back of the hand, toward the thumb's side, along.
+# Rings of the thumb, from the wrist: meters toward the back of the hand, toward the thumb's
+# side, along; radius; where it looks, in the same three directions. Then its tip.
 _THUMB = np.array(
     [
-        [0.064, 0.049, 0.016, 0.0150],
-        [0.086, 0.055, 0.026, 0.0135],
-        [0.106, 0.056, 0.034, 0.0105],
+        [-0.012, 0.047, 0.057, 0.0165, -0.30, 0.60, 0.74],
+        [-0.023, 0.057, 0.080, 0.0138, -0.35, 0.36, 0.87],
+        [-0.032, 0.061, 0.101, 0.0108, -0.37, 0.16, 0.92],
     ]
 )
-_THUMB_WAY, _THUMB_TIP = np.array([-0.36, 0.25, 0.90]), np.array([-0.037, 0.056, 0.116])
+_THUMB_TIP = np.array([-0.037, 0.062, 0.114])
 # Fingers from the index to the little one: knuckle along and toward the thumb's side, length,
 # radius, all in meters; how far it spreads toward the thumb and how far it is curled, radians.
 _FINGERS = np.array(
@@ -109,15 +109,16 @@ def _add_thumb(
     paint: int,
 ) -> None:
     """Thumb from the opening ``base``; frame rows: back of the hand, toward the thumb, along."""
-    middle = np.mean([cage.points[k] for k in base], axis=0)
-    spread = np.array([cage.points[k] for k in base]) - middle
-    # its rings keep the outline of the opening, turned to look along the thumb
-    axis = _THUMB_WAY / np.linalg.norm(_THUMB_WAY) @ frame
-    for depth, forward, down, size in _THUMB.tolist():
-        center = wrist + unit * (depth * frame[2] + forward * frame[1] - down * frame[0])
-        flat = spread - (spread @ axis)[:, None] * axis
-        flat /= np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-9)
-        ring = cage.ring(center + unit * size * flat, rigid)
+    # as it bends forward, the opening's near edge becomes its outside, the far one its inside
+    above = float((cage.points[base[0]] - cage.points[base[2]]) @ frame[0])
+    turn = np.deg2rad(60.0 * np.arange(1, -5, -1)) * np.sign(above)
+    for row in _THUMB:
+        axis = row[4:] / np.linalg.norm(row[4:])
+        out = np.array([0.0, 1.0, 0.0]) - axis[1] * axis
+        out /= np.linalg.norm(out)
+        up = np.cross(out, axis)
+        flat = np.cos(turn)[:, None] * out + np.sin(turn)[:, None] * up
+        ring = cage.ring(wrist + unit * ((row[:3] + row[3] * flat) @ frame), rigid)
         cage.loft(base, ring, paint)
         base = ring
     cage.fan(base, cage.point(wrist + unit * (_THUMB_TIP @ frame), rigid), paint)
