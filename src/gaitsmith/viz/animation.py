@@ -44,7 +44,8 @@ def gif(motion: Motion, path: str | Path, *, width: int = 480, fps: float = 20.0
     Parameters
     ----------
     motion
-        At least one frame of a skeleton with VRM humanoid names.
+        At least one frame. A rig with the bones of a person is shown as one, whatever its
+        names and its rest pose; any other as a solid along each bone.
     path
         Where to write; GIF whatever its suffix.
     width
@@ -56,7 +57,7 @@ def gif(motion: Motion, path: str | Path, *, width: int = 480, fps: float = 20.0
     Raises
     ------
     InvalidInputError
-        If the motion has no frames, no joint has a humanoid name, or a number is out of range.
+        If the motion has no frames, or a number is out of range.
     """
     if not 120 <= width <= 1920 or width != int(width):
         raise InvalidInputError(f"width must be a whole number from 120 to 1920, got {width!r}")

@@ -39,7 +39,8 @@ def contact_sheet(
     Parameters
     ----------
     motion
-        At least one frame of a skeleton with VRM humanoid names.
+        At least one frame. A rig with the bones of a person is shown as one, whatever its
+        names and its rest pose; any other as a solid along each bone.
     path
         Where to write; PNG whatever its suffix.
     phases
@@ -52,7 +53,7 @@ def contact_sheet(
     Raises
     ------
     InvalidInputError
-        If the motion has no frames, no joint has a humanoid name, or a number is out of range.
+        If the motion has no frames, or a number is out of range.
     """
     for name, value, low, high in (
         ("phases", phases, 2, 16),
