@@ -156,7 +156,7 @@ def gait_from(
         elif path.suffix:
             raise UnknownFormatError(path.suffix, (SUFFIX, *CLIPS), verb="take a gait from")
         else:
-            raise UnknownNameError("gait (name, .gait.json file or clip)", text, GAITS)
+            raise UnknownNameError("gait", text, GAITS)
     return learned(spec, manner), gait_to_dict(spec)
 
 
