@@ -1,0 +1,179 @@
+"""The swing foot seen from above, [KB92a] section 5.3, and kept clear of the stance foot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.geometry.splines import PlaneCurves
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.synthesis.bent import Bent, Flat2D
+
+#: Meters between the axes of the feet in passing, at least, in turns; narrower footsteps keep
+#: their own distance.
+APART = 0.085
+#: Turn (radians) and change of width (m) of a step from which it is fully kept so.
+TURNS, SHIFTS = 0.10, 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class SwingPath:
+    """Plans of S swings: a curve of second degree, and how far it is pushed aside."""
+
+    curve: PlaneCurves
+    whole: Float[np.ndarray, "S"]
+    push: Float[np.ndarray, "S"]
+    away: Float[np.ndarray, "S 2"]
+
+    @staticmethod
+    def of(body: Body, bent: Bent, flat: Flat2D) -> SwingPath:
+        """D1 at toe-off, D3 at heel strike, D2 the stance ankle mirrored in the line beside it."""
+        way = np.stack([np.sin(bent.direction), np.cos(bent.direction)], axis=-1)
+        ankle = flat.ankle[:, 1, 0]
+        # asked lengths are rounded: the ends are measured from their own footholds
+        leaving = ankle[flat.off] + flat.asked[:, 0]
+        landing = ankle[flat.last] - flat.asked[:, 1]
+        start = bent.place[:, 0] + leaving[:, None] * way[:, 0]
+        end = bent.place[:, 2] + landing[:, None] * way[:, 2]
+        mirrored = 2.0 * bent.middle[:, 1] - bent.place[:, 1]
+        chord = end - start
+        size = np.maximum((chord * chord).sum(-1), 1e-12)
+        share = ((mirrored - start) * chord).sum(-1) / size
+        # beside its own chord, or the curve would run back
+        control = mirrored + ((np.clip(share, 0.25, 0.75) - share)[:, None]) * chord
+        curve = PlaneCurves.bezier(start, control, end)
+        left = np.stack([np.cos(bent.direction[:, 1]), -np.sin(bent.direction[:, 1])], axis=-1)
+        away = -bent.sign[:, None] * left
+        path = SwingPath(curve, curve.length(), np.zeros(len(size)), away)
+        return path.kept_apart(body, bent, flat)
+
+    def kept_apart(self, body: Body, bent: Bent, flat: Flat2D) -> SwingPath:
+        """Pushed away from the stance leg where the feet would come too near."""
+        turn = np.abs(bent.direction[:, 2] - bent.direction[:, 0])
+        turn = turn + np.abs(
+            bent.direction[:, 1] - 0.5 * (bent.direction[:, 0] + bent.direction[:, 2])
+        )
+        aside = ((bent.place - bent.middle) ** 2).sum(-1) ** 0.5
+        off_line = np.abs(
+            ((bent.middle[:, [0, 2]] - bent.middle[:, [1]]) * self.away[:, None]).sum(-1)
+        ).max(-1)
+        uneven = np.ptp(aside, axis=-1) + off_line
+        turn, uneven = (np.where(v < 1e-9, 0.0, v) for v in (turn, uneven))
+        weight = np.minimum(1.0, turn / TURNS + uneven / SHIFTS)
+        if not weight.any():
+            return self
+        swinging = np.flatnonzero(
+            (flat.swing > 0.04) & (flat.swing < 0.96) & (weight[flat.step] > 0)
+        )
+        if not len(swinging):
+            return self
+        i = flat.step[swinging]
+        shape = push_shape(flat.swing[swinging])
+        plain, heading = self._plan(bent, flat, swinging)
+        push = np.array(self.push)
+        foot = body.foot
+        for _ in range(3):
+            ankle = plain + (push[i] * shape)[:, None] * self.away[i]
+            gap = feet_apart(
+                ankle,
+                heading,
+                bent.place[i, 1],
+                bent.heading[i, 1],
+                back=foot.heel,
+                front=foot.ball + foot.toes,
+            )
+            need = np.maximum(0.0, APART - gap) / np.maximum(shape, 0.35)
+            more = np.zeros(len(push))
+            np.maximum.at(more, i, need)
+            push = push + weight * more
+        return SwingPath(self.curve, self.whole, push, self.away)
+
+    def _plan(
+        self, bent: Bent, flat: Flat2D, which: np.ndarray
+    ) -> tuple[Float[np.ndarray, "m 2"], Float[np.ndarray, "m"]]:
+        """Ankles and headings of the swing foot at samples ``which``, not pushed."""
+        i = flat.step[which]
+        ankle = flat.ankle[:, 1, 0]
+        begin, end = ankle[flat.off][i], ankle[flat.last][i]
+        span = end - begin
+        moved = np.abs(span) > 1e-6
+        share = np.where(
+            moved, (ankle[which] - begin) / np.where(moved, span, 1.0), flat.swing[which]
+        )
+        whole = self.whole[i]
+        along = share * whole
+        curve = self.curve.rows(i)
+        u = curve.parameter(along, whole)
+        tangent = curve.derivative(u)
+        unit = tangent / np.maximum(np.linalg.norm(tangent, axis=-1), 1e-12)[:, None]
+        # the share leaves [0, 1] where the foot draws back before it lands
+        over = np.maximum(along - whole, 0.0) + np.minimum(along, 0.0)
+        plan = curve.at(u) + over[:, None] * unit
+        turned = smoothstep(flat.swing[which])
+        heading = bent.heading[i, 0] + turned * (bent.heading[i, 2] - bent.heading[i, 0])
+        return plan, heading
+
+    def read(
+        self, bent: Bent, flat: Flat2D
+    ) -> tuple[Float[np.ndarray, "M 2 3"], Float[np.ndarray, "M 2"]]:
+        """World ankles and headings of [left, right]; where a foot bears contact replaces them."""
+        every = np.arange(len(flat.step))
+        i = flat.step
+        plan, heading = self._plan(bent, flat, every)
+        plan = plan + (self.push[i] * push_shape(flat.swing))[:, None] * self.away[i]
+        ankle = np.empty((len(i), 2, 3))
+        headings = np.empty((len(i), 2))
+        stance = bent.stance[i]
+        ankle[every, stance, 0] = bent.place[i, 1, 0]
+        ankle[every, stance, 2] = bent.place[i, 1, 1]
+        ankle[every, stance, 1] = flat.ankle[:, 0, 1]
+        headings[every, stance] = bent.heading[i, 1]
+        ankle[every, 1 - stance, 0] = plan[:, 0]
+        ankle[every, 1 - stance, 2] = plan[:, 1]
+        ankle[every, 1 - stance, 1] = flat.ankle[:, 1, 1]
+        headings[every, 1 - stance] = heading
+        return ankle, headings
+
+
+def push_shape(u: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+    """0 at toe-off and heel strike, 1 in the middle of the swing."""
+    return smoothstep(u / 0.35) * smoothstep((1.0 - u) / 0.35)
+
+
+def feet_apart(
+    ankle: Float[np.ndarray, "n 2"],
+    heading: Float[np.ndarray, "n"],
+    stand: Float[np.ndarray, "n 2"],
+    stand_heading: Float[np.ndarray, "n"],
+    *,
+    back: float,
+    front: float,
+) -> Float[np.ndarray, "n"]:
+    """Distance of two foot axes seen from above, heel to toe tip, meters; 0 where they cross."""
+    one = np.stack([np.sin(heading), np.cos(heading)], axis=-1)
+    two = np.stack([np.sin(stand_heading), np.cos(stand_heading)], axis=-1)
+    a, b = ankle - back * one, ankle + front * one
+    c, d = stand - back * two, stand + front * two
+    nearest = np.minimum(
+        np.minimum(_to_segment(a, c, d), _to_segment(b, c, d)),
+        np.minimum(_to_segment(c, a, b), _to_segment(d, a, b)),
+    )
+
+    def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
+        return np.sign((q - p)[:, 0] * (r - p)[:, 1] - (q - p)[:, 1] * (r - p)[:, 0])
+
+    cross = (side(a, b, c) != side(a, b, d)) & (side(c, d, a) != side(c, d, b))
+    return np.where(cross, 0.0, nearest)
+
+
+def _to_segment(p: np.ndarray, a: np.ndarray, b: np.ndarray) -> Float[np.ndarray, "n"]:
+    line = b - a
+    t = np.clip(((p - a) * line).sum(-1) / (line * line).sum(-1), 0.0, 1.0)
+    return np.linalg.norm(p - a - t[:, None] * line, axis=-1)
