@@ -197,7 +197,9 @@ def walk(
     }
     ground = GROUNDS["flat"]()
     keep = cadence is not None
-    plan = _plan(where, who, pace, stance, ground, start, stop, keep=keep)
+    plan = _plan(
+        where, who, pace, stance, ground, start, stop, keep=keep, outside=banking == "body"
+    )
     if step_length is not None and isinstance(where, WalkPath):
         _warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
     style = GAITS[gait](manner)
@@ -216,6 +218,7 @@ def _plan(
     stop: str,
     *,
     keep: bool,
+    outside: bool,
 ) -> StepPlan:
     """Footsteps along a path, or those that were given."""
     if isinstance(where, WalkPath):
@@ -224,7 +227,7 @@ def _plan(
             pace=pace,
             stance=stance,
             ground=ground,
-            body=body,
+            body=body if outside else None,
             start=start,
             stop=stop,
             keep_cadence=keep,

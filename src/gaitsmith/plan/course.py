@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 #: The head turns towards where the path goes this far ahead, meters: it starts 1.1 m before a
 #: corner (Sreenivasa 2008); near points count more, which leads by about 0.3 s on the whole.
 LOOK_AHEAD = 1.1
+#: Height of the center of mass in walking over that in standing, legs bent and feet apart.
+WALKING = 0.96
 #: Tangent of the largest lean.
 LARGEST_LEAN = 0.35
 #: Largest curvature that footsteps are read to have, per meter.
@@ -65,7 +67,7 @@ def lean_lever(body: Body) -> float:
     moved = np.zeros_like(rest)
     moved[:, 0] = np.minimum(rest[:, 1] / hips, 1.0)
     share = float(center_of_mass(skeleton, moved, segments)[0])
-    return height / share
+    return WALKING * height / share
 
 
 def course_middle(

@@ -140,7 +140,7 @@ def follow(
     direction = path.heading_at(along)
     count = max(2, int(np.ceil((path.length - min(along[0], 0.0)) / PATH_SPACING)) + 1)
     shown = np.linspace(float(min(along[0], 0.0)), path.length, count)
-    lean = np.zeros(len(along)) if body is None else _lean(path, along, time, pace, start, stop)
+    lean = _lean(path, along, time, pace, start)
     middle = path.at(along)
     if body is not None and lean.any():
         outside = leftward(direction)[:, [0, 2]]
@@ -236,7 +236,7 @@ def _too_sharp(path: Path, first: float, last: float) -> InfeasibleError:
 
 
 def _lean(
-    path: Path, along: np.ndarray, time: np.ndarray, pace: Pace, start: str, stop: str
+    path: Path, along: np.ndarray, time: np.ndarray, pace: Pace, start: str
 ) -> Float[np.ndarray, "N"]:
     """Tangent of the lean at each footstep, from the path's own curvature over a stride."""
     if path.straight:

@@ -10,6 +10,8 @@ import numpy as np
 from gaitsmith._checks import frozen_array
 from gaitsmith.conventions import SIDE_SIGN, SIDES, ahead, leftward
 from gaitsmith.errors import InfeasibleError, InvalidInputError
+from gaitsmith.geometry.planar import feet_apart
+from gaitsmith.plan.course import course_curvature, course_pieces
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.lengths import EASED_DURATION, MOST_STEPS
 
@@ -25,8 +27,11 @@ if TYPE_CHECKING:
 ON_GROUND = 1e-3
 #: Turn of the walk in one step, radians; a step must lead at least so far ahead, over the leg.
 LARGEST_TURN, LEAST_AHEAD = float(np.radians(65.0)), 0.1
-#: Step width: feet nearer than this touch (m), wider apart than this part of the leg is a straddle.
-NARROWEST, WIDEST = 0.04, 0.6
+#: Farthest that the walk may lead aside of where the feet point.
+LARGEST_ASIDE = float(np.radians(60.0))
+#: Axes of two feet that stand nearer than this touch; a foot set farther across the other one
+#: than this crosses the legs (m); wider apart than this part of the leg is a straddle.
+TOUCHING, CROSSED, WIDEST = 0.045, 0.03, 0.6
 #: A step takes its usual time times the square root of usual over own length, within these.
 QUICKEST, SLOWEST = 0.75, 1.6
 #: Time that a turning step takes longer, per radian.
@@ -104,13 +109,13 @@ def plan_given(given: GivenSteps, *, body: Body, pace: Pace, ground: Ground) -> 
                 f"{level[i]:g} m; leave the column out to stand on the ground"
             )
     position = np.stack([x, level, z], axis=-1)
-    _check_steps(given.side, position, direction, body)
+    _check_steps(given.side, position, heading, direction, body)
     kinds: list[StepKind] = ["walk"] * (len(x) - 2)
     kinds[0], kinds[-1] = "start", "stop"
     time = given.time
     if time is None:
         time = _times(position, direction, pace, kinds)
-    return StepPlan(
+    plan = StepPlan(
         side=given.side,
         position=position,
         heading=heading,
@@ -118,6 +123,33 @@ def plan_given(given: GivenSteps, *, body: Body, pace: Pace, ground: Ground) -> 
         time=time,
         kinds=tuple(kinds),
     )
+    _check_course(plan)
+    return plan
+
+
+def _check_course(plan: StepPlan) -> None:
+    """Refuse steps whose feet point elsewhere than they go: the hips would have to whirl."""
+    assert plan.middle is not None
+    curvature = course_curvature(plan.middle, plan.direction)
+    first, last = slice(1, -2), slice(2, -1)
+    curves = course_pieces(
+        plan.middle[first],
+        plan.middle[last],
+        (plan.direction[first], plan.direction[last]),
+        (curvature[first], curvature[last]),
+    )
+    mean = 0.5 * (plan.direction[first] + plan.direction[last])
+    for u in np.linspace(0.0, 1.0, 17):
+        way = curves.derivative(np.full(len(curves), u))
+        aside = np.arctan2(way[:, 0], way[:, 1]) - mean
+        aside = np.abs(np.arctan2(np.sin(aside), np.cos(aside)))
+        if (aside > LARGEST_ASIDE).any():
+            i = int(aside.argmax())
+            raise InfeasibleError(
+                f"footstep {i + 3} ({SIDES[plan.side[i + 2]]}): the way to it leads "
+                f"{np.degrees(aside[i]):.0f} deg aside of where the feet point, a walk may lead "
+                f"{np.degrees(LARGEST_ASIDE):.0f} deg; turn the feet along the way"
+            )
 
 
 def _direction(heading: Float[np.ndarray, "N"]) -> Float[np.ndarray, "N"]:
@@ -141,6 +173,7 @@ def _check_sides(side: Int[np.ndarray, "N"]) -> None:
 def _check_steps(
     side: Int[np.ndarray, "N"],
     position: Float[np.ndarray, "N 3"],
+    heading: Float[np.ndarray, "N"],
     direction: Float[np.ndarray, "N"],
     body: Body,
 ) -> None:
@@ -152,6 +185,10 @@ def _check_steps(
     width = (gap * leftward(mean)).sum(-1) * SIDE_SIGN[side[1:]]
     least = LEAST_AHEAD * body.leg_length
     wide = WIDEST * body.leg_length
+    foot, spot = body.foot, position[:, [0, 2]]
+    apart = feet_apart(
+        spot[1:], heading[1:], spot[:-1], heading[:-1], back=foot.heel, front=foot.ball + foot.toes
+    )
     walks = np.zeros(len(gap), dtype=np.bool_)
     walks[1:-1] = True
     for i in range(len(gap)):
@@ -166,10 +203,11 @@ def _check_steps(
                 f"{name}: leads {length[i]:.3f} m ahead, a walk needs at least {least:.3f} m; "
                 "steps back, aside or on the spot are not built yet"
             )
-        if width[i] < NARROWEST and (walks[i] or np.hypot(gap[i, 0], gap[i, 2]) < 0.3):
+        if apart[i] < TOUCHING or width[i] < -CROSSED:
             raise InfeasibleError(
-                f"{name}: is {width[i]:.3f} m to its side of the foot before, legs need at "
-                f"least {NARROWEST:.3f} m"
+                f"{name}: its axis is {apart[i]:.3f} m from that of the foot before and it lies "
+                f"{width[i]:.3f} m to its own side of it; feet need {TOUCHING:.3f} m and may not "
+                f"cross by more than {CROSSED:.3f} m: set it farther out"
             )
         if width[i] > wide:
             raise InfeasibleError(

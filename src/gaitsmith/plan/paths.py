@@ -284,14 +284,15 @@ def _straight(points: Float[np.ndarray, "n 2"]) -> Path | None:
 
 def _spline_path(spline: Spline) -> Path:
     """A spline on nodes close enough for its curvature."""
-    knots, parts = spline.knots, []
-    for a, b in pairwise(knots):
-        inside = np.linspace(a, b, 33)
-        bend = float(np.abs(spline.curvature(inside)).max()) if b > a else 0.0
-        step = min(NODE_SPACING, NODE_ANGLE / max(bend, 1e-9))
-        count = int(min(max(1.0, np.ceil((b - a) / step)), 2000.0))
-        parts.append(np.linspace(a, b, count + 1)[:-1])
-    u = np.concatenate([*parts, knots[-1:]])
+    knots = spline.knots
+    gaps = np.diff(knots)
+    inside = knots[:-1, None] + gaps[:, None] * (np.arange(17) / 16.0)
+    bends = np.abs(spline.curvature(inside.ravel())).reshape(inside.shape).max(axis=1)
+    spacing = np.minimum(NODE_SPACING, NODE_ANGLE / np.maximum(bends, 1e-9))
+    counts = np.clip(np.ceil(gaps / spacing), 1, 2000).astype(np.int64)
+    first = np.repeat(np.cumsum(counts) - counts, counts)
+    share = (np.arange(counts.sum()) - first) / np.repeat(counts, counts)
+    u = np.append(np.repeat(knots[:-1], counts) + share * np.repeat(gaps, counts), knots[-1])
     along = spline.arc_length(u)
     _checked_length(float(along[-1]))
     tangent = spline.derivative(u)

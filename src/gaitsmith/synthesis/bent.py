@@ -10,6 +10,7 @@ import numpy as np
 from gaitsmith.conventions import SIDE_SIGN
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.plan.course import course_pieces
+from gaitsmith.synthesis.asking import COLUMNS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,8 +19,7 @@ if TYPE_CHECKING:
 
     from gaitsmith.geometry.splines import PlaneCurves
     from gaitsmith.plan.footsteps import PlannedStep
-    from gaitsmith.synthesis.overlay import Overlay
-    from gaitsmith.walks.model import SagittalStep, StepRequest
+    from gaitsmith.synthesis.asking import Answer
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,27 +104,24 @@ class Flat2D:
     center: Float[np.ndarray, "M 2"]
     ankle: Float[np.ndarray, "M 2 2"]
     asked: Float[np.ndarray, "S 2"]
-    sway: Float[np.ndarray, "M"]
-    upper: Float[np.ndarray, "M U 3"]
+    curves: Float[np.ndarray, "M C"]
 
     @staticmethod
-    def of(
-        answers: Sequence[tuple[StepRequest, SagittalStep, Overlay]],
-        length: Float[np.ndarray, "S 2"],
-    ) -> Flat2D:
+    def of(answers: Sequence[Answer], length: Float[np.ndarray, "S 2"]) -> Flat2D:
         """Put the answers on one axis, for steps whose true lengths are ``length``."""
-        walked = [s for _, s, _ in answers]
-        counts = np.array([len(s.phase) for s in walked])
+        counts = np.array([len(s.phase) for s in answers])
         first = np.concatenate([[0], np.cumsum(counts)[:-1]])
-        step = np.repeat(np.arange(len(walked)), counts)
-        phase = np.concatenate([s.phase for s in walked])
-        toe_off = np.array([s.toe_off for s in walked])
-        off = first + np.array([int(s.phase.searchsorted(s.toe_off)) for s in walked])
+        step = np.repeat(np.arange(len(answers)), counts)
+        phase = np.concatenate([s.phase for s in answers])
+        toe_off = np.array([s.toe_off for s in answers])
+        off = first + np.array([int(s.phase.searchsorted(s.toe_off)) for s in answers])
         swing = np.maximum((phase - toe_off[step]) / (1.0 - toe_off[step]), 0.0)
-        asked = np.array([(r.previous_length, r.length) for r, _, _ in answers])
-        center = np.concatenate([s.center for s in walked])
-        # rounded lengths were asked for: what is left is stretched, smoothly over the step
+        asked = np.array([(s.previous, s.length) for s in answers])
+        curves = np.concatenate([s.curves for s in answers])
+        center = np.array(curves[:, COLUMNS["center"]])
+        # very short steps are asked for longer: smoothly pressed together over the step
         ratio = np.where(asked > 0.0, length / np.where(asked > 0.0, asked, 1.0), 1.0)
+        ratio = np.where(np.abs(ratio - 1.0) < 1e-9, 1.0, ratio)
         ease = smoothstep(phase)
         center[:, 0] *= ratio[step, 0] + ease * (ratio[step, 1] - ratio[step, 0])
         return Flat2D(
@@ -135,11 +132,14 @@ class Flat2D:
             toe_off=toe_off,
             swing=swing,
             center=center,
-            ankle=np.concatenate([s.ankle for s in walked]),
+            ankle=curves[:, COLUMNS["ankle"]].reshape(-1, 2, 2),
             asked=asked,
-            sway=np.concatenate([o.sway for _, _, o in answers]),
-            upper=np.concatenate([o.upper for _, _, o in answers]),
+            curves=curves,
         )
+
+    def column(self, name: str) -> Float[np.ndarray, "M c"]:
+        """Samples of one of the curves."""
+        return self.curves[:, COLUMNS[name]]
 
     @property
     def last(self) -> Int[np.ndarray, "S"]:

@@ -54,7 +54,7 @@ def track(
     along = np.where(later, x, x + whole)
     curve = both.rows(rows)
     degenerate = whole < 1e-9
-    u = np.where(degenerate, np.where(later, 0.0, 1.0), curve.parameter(along, whole))
+    u = np.where(degenerate, np.where(later, 0.0, 1.0), both.parameter(rows, along))
     tangent = curve.derivative(u)
     base = np.where(later, bent.direction[i, 1], bent.direction[i, 0])
     here = np.where(degenerate, 0.0, np.arctan2(tangent[:, 0], tangent[:, 1]) - base)
@@ -108,7 +108,7 @@ def anchored(
     whole = spline.length()
     share = (x - x[off][i]) / np.maximum((x[last] - x[off])[i], 1e-9)
     curve = spline.rows(i)
-    u = curve.parameter(np.clip(share, 0.0, 1.0) * whole[i], whole[i])
+    u = spline.parameter(i, np.clip(share, 0.0, 1.0) * whole[i])
     tangent = curve.derivative(u)
     turn = np.arctan2(tangent[:, 0], tangent[:, 1]) - bent.direction[i, 1]
     turn = np.arctan2(np.sin(turn), np.cos(turn))

@@ -7,15 +7,17 @@ of a walk are bent at once, on all their samples.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaitsmith._checks import one_of
 from gaitsmith.contact import ReferenceStep, StepCurves
-from gaitsmith.errors import InfeasibleStepError
+from gaitsmith.errors import InfeasibleStepError, InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.plan.course import lean_lever
+from gaitsmith.synthesis.asking import SHORTEST, Answer, Asker
 from gaitsmith.synthesis.bent import Bent, Flat2D
 from gaitsmith.synthesis.center import CenterPath, anchored, track
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
@@ -23,7 +25,7 @@ from gaitsmith.synthesis.straight import StraightGenerator, is_straight
 from gaitsmith.synthesis.swing_path import SwingPath
 from gaitsmith.synthesis.turning import TRUNK_LEAN, bent_upper
 from gaitsmith.synthesis.upper_body import RuleOverlay
-from gaitsmith.walks.model import SagittalStep, StepRequest, StraightWalk
+from gaitsmith.walks.model import StepRequest, StraightWalk
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,15 +35,10 @@ if TYPE_CHECKING:
     from gaitsmith.body.body import Body
     from gaitsmith.ground import Ground
     from gaitsmith.plan.footsteps import Footstep, PlannedStep
-    from gaitsmith.synthesis.overlay import Overlay, Overlayer
+    from gaitsmith.synthesis.overlay import Overlayer
 
 #: Ways to lean into a curve: feet outside as people do, trunk inside as [KB92a], not at all.
 BANKINGS = ("body", "trunk", "none")
-#: Step lengths on curves are drawn alike to this part of the leg, so that steps share their
-#: sagittal curves; what is left is stretched. Durations to this many seconds.
-ALIKE, ALIKE_DURATION = 0.015, 0.02
-#: Shortest step that a straight walk is asked for, over leg length.
-SHORTEST_ASKED = 0.1
 
 
 class CurvedGenerator:
@@ -86,7 +83,7 @@ class CurvedGenerator:
         self._banking = one_of("banking", banking, BANKINGS)
         self._exact = exact
         self._straight = StraightGenerator(walk, ground, self._overlay)
-        self._drawn: dict[tuple[Body, StepRequest], tuple[SagittalStep, Overlay]] = {}
+        self._asker = Asker(walk, self._overlay)
 
     def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
         """See :meth:`gaitsmith.synthesis.step.StepGenerator.prepare`."""
@@ -95,88 +92,48 @@ class CurvedGenerator:
     def prepare_all(
         self, body: Body, state: WalkerState, steps: Sequence[PlannedStep]
     ) -> list[PreparedStep]:
-        """Plan consecutive steps from ``state``: the same as one after the other, much quicker."""
-        out: list[PreparedStep | None] = [None] * len(steps)
-        curved: list[int] = []
-        answers: list[tuple[StepRequest, SagittalStep, Overlay]] = []
+        """Plan consecutive steps from ``state``.
+
+        The same as one after the other to a millimeter, and much quicker: many steps are read
+        off a table of the straight walk's (:mod:`gaitsmith.synthesis.asking`).
+        """
         bent = Bent.of(steps)
+        requests = [_request(body, s, bent.length[i]) for i, s in enumerate(steps)]
+        tabled = not self._exact and len(steps) > 1
+        anchor = round(float(np.median(bent.length[:, 1])), 12)
+        straight = [not self._exact and is_straight(s) for s in steps]
+        if tabled and not all(straight):
+            _bend_ends(straight, bent.length, anchor)
+        curved = [i for i, same in enumerate(straight) if not same]
+        read: dict[int, Answer | None] = {}
+        if tabled and curved and not any(requests[i].rise for i in curved):
+            table = self._asker.table(body, [requests[i] for i in curved], anchor)
+            read = dict(zip(curved, table, strict=True))
+        out: dict[int, PreparedStep] = {}
+        answers: list[Answer] = []
         for i, step in enumerate(steps):
-            if not self._exact and is_straight(step):
-                done = self._straight.prepare(body, state, step)
-                out[i], state = done, done.end
+            if straight[i]:
+                out[i] = self._straight.prepare(body, state, step)
+                state = out[i].end
                 continue
-            request = self._request(body, state, step, bent.length[i])
-            sagittal, overlay = self._ask(body, request, step)
-            curved.append(i)
-            answers.append((request, sagittal, overlay))
-            rise = float(step.target.position[1] - step.stance.position[1])
-            state = WalkerState(hip_height=float(sagittal.center[-1, 1]) - rise)
+            answer = read.get(i)
+            if answer is None:
+                answer = self._ask(body, replace(requests[i], hip_height=_rounded(state)), step)
+            answer.raised_from(state.hip_height)
+            answers.append(answer)
+            state = WalkerState(hip_height=float(answer.curves[-1, 1]) - requests[i].rise)
         if curved:
-            chosen = [steps[i] for i in curved]
             rows = np.array(curved)
             part = Bent(*(getattr(bent, name)[rows] for name in Bent.__dataclass_fields__))
-            for i, done in zip(curved, self._bend(body, chosen, part, answers), strict=True):
-                out[i] = done
-        return [done for done in out if done is not None]
+            done = self._bend(body, [steps[i] for i in curved], part, answers)
+            out |= dict(zip(curved, done, strict=True))
+        return [out[i] for i in range(len(steps))]
 
-    # ---------------------------------------------------------------- the 2D step
-
-    def _request(
-        self,
-        body: Body,
-        state: WalkerState,
-        step: PlannedStep,
-        lengths: Float[np.ndarray, "2"],
-    ) -> StepRequest:
-        """The underlying 2D step: as long as the curves beside the footsteps."""
-        rise = float(step.target.position[1] - step.stance.position[1])
-        following = 0.0
-        if step.following is not None:
-            gap = step.following.middle - step.target.middle
-            following = float(np.hypot(*gap))
-        previous, length = (float(v) for v in lengths)
-        if step.kind == "start":
-            previous = 0.0
-        if step.kind == "stop":
-            length = 0.0
-        return StepRequest(
-            side=step.stance.side,
-            previous_length=self._alike(body, previous),
-            length=self._alike(body, length),
-            next_length=self._alike(body, following),
-            duration=self._duration(step.duration),
-            rise=rise,
-            hip_height=None if state.hip_height is None else round(state.hip_height, 12),
-            kind=step.kind,
-        )
-
-    def _alike(self, body: Body, length: float) -> float:
-        if length == 0.0:
-            return 0.0
-        length = max(length, SHORTEST_ASKED * body.leg_length)
-        if self._exact:
-            return round(length, 12)
-        grain = ALIKE * body.leg_length
-        return (round(length / grain + 0.31831) - 0.31831) * grain
-
-    def _duration(self, duration: float) -> float:
-        return duration if self._exact else round(duration / ALIKE_DURATION) * ALIKE_DURATION
-
-    def _ask(
-        self, body: Body, request: StepRequest, step: PlannedStep
-    ) -> tuple[SagittalStep, Overlay]:
-        key = (body, request)
-        found = self._drawn.get(key)
-        if found is None:
-            try:
-                sagittal = self._walk.step(body, request)
-            except InfeasibleStepError as error:
-                raise _named(error, step) from None
-            found = sagittal, self._overlay(body, request, sagittal)
-            if len(self._drawn) > 4096:
-                self._drawn.clear()
-            self._drawn[key] = found
-        return found
+    def _ask(self, body: Body, request: StepRequest, step: PlannedStep) -> Answer:
+        try:
+            return self._asker.ask(body, request)
+        except InfeasibleStepError as error:
+            raise _named(error, step) from None
 
     # ------------------------------------------------------------------- bending
 
@@ -185,7 +142,7 @@ class CurvedGenerator:
         body: Body,
         steps: Sequence[PlannedStep],
         bent: Bent,
-        answers: Sequence[tuple[StepRequest, SagittalStep, Overlay]],
+        answers: Sequence[Answer],
     ) -> list[PreparedStep]:
         flat = Flat2D.of(answers, bent.length)
         offset = lean_lever(body) if self._banking == "body" else 0.0
@@ -194,10 +151,12 @@ class CurvedGenerator:
         height = _height(body, bent, flat, center)
         ankle, foot_heading = SwingPath.of(body, bent, flat).read(bent, flat)
         center_out = np.empty((len(flat.step), 3))
-        place = center.place + flat.sway[:, None] * center.left
+        place = center.place + flat.column("sway") * center.left
         center_out[:, 0], center_out[:, 1], center_out[:, 2] = place[:, 0], height, place[:, 1]
         trunk = TRUNK_LEAN.get(self._banking, 0.0)
-        upper = bent_upper(body, flat.upper, center.gaze, trunk * center.lean)
+        upper = bent_upper(
+            body, flat.column("upper").reshape(len(place), -1, 3), center.gaze, trunk * center.lean
+        )
         return self._cut(
             body, steps, bent, flat, answers, center, center_out, ankle, foot_heading, upper
         )
@@ -208,7 +167,7 @@ class CurvedGenerator:
         steps: Sequence[PlannedStep],
         bent: Bent,
         flat: Flat2D,
-        answers: Sequence[tuple[StepRequest, SagittalStep, Overlay]],
+        answers: Sequence[Answer],
         path: CenterPath,
         center: Float[np.ndarray, "M 3"],
         ankle: Float[np.ndarray, "M 2 3"],
@@ -217,23 +176,28 @@ class CurvedGenerator:
     ) -> list[PreparedStep]:
         """Steps of their own again."""
         out: list[PreparedStep] = []
+        for name, values in (("center", center), ("ankle", ankle), ("upper", upper)):
+            if not np.isfinite(values).all():
+                raise InvalidInputError(f"{name} of a step is not finite; its walk is no good")
         origin = np.stack([s.stance.position for s in steps])
         center[:, [0, 2]] -= origin[flat.step][:, [0, 2]]
         ankle[..., [0, 2]] -= origin[flat.step][:, None][..., [0, 2]]
-        for i, (step, (_, sagittal, overlay)) in enumerate(zip(steps, answers, strict=True)):
-            rows = slice(int(flat.first[i]), int(flat.first[i]) + len(sagittal.phase))
-            by_side = [0, 1] if step.stance.side == 0 else [1, 0]  # (stance, swing) to (l, r)
-            curves = StepCurves(
-                phase=sagittal.phase,
+        pair = np.stack([bent.stance, 1 - bent.stance], axis=-1)[flat.step]  # of (left, right)
+        legs = {
+            name: np.take_along_axis(flat.column(name), pair, axis=1)
+            for name in ("pitch", "meta", "bend")
+        }
+        for i, (step, answer) in enumerate(zip(steps, answers, strict=True)):
+            rows = slice(int(flat.first[i]), int(flat.first[i]) + len(answer.phase))
+            curves = StepCurves.trusted(
+                phase=answer.phase,
                 center=center[rows],
                 heading=path.heading[rows],
-                pelvis=overlay.pelvis,
+                pelvis=flat.column("pelvis")[rows],
                 ankle=ankle[rows],
                 foot_heading=foot_heading[rows],
-                pitch=sagittal.pitch[:, by_side],
-                meta=sagittal.meta[:, by_side],
-                bend=sagittal.bend[:, by_side],
                 upper=upper[rows],
+                **{name: values[rows] for name, values in legs.items()},
             )
             foothold, heading = np.empty((2, 3)), np.empty(2)
             for foot in (step.stance, step.origin):
@@ -242,16 +206,52 @@ class CurvedGenerator:
                 curves=curves,
                 origin=origin[i],
                 stance=step.stance.side,
-                toe_off=sagittal.toe_off,
+                toe_off=answer.toe_off,
                 foothold=foothold,
                 foothold_heading=heading,
                 target=step.target.position,
                 target_heading=step.target.heading,
             )
             rise = float(step.target.position[1] - step.stance.position[1])
-            end = WalkerState(hip_height=float(sagittal.center[-1, 1]) - rise)
+            end = WalkerState(hip_height=float(answer.curves[-1, 1]) - rise)
             out.append(TabledStep(step.duration, end, reference, body, self._ground))
         return out
+
+
+def _request(body: Body, step: PlannedStep, lengths: Float[np.ndarray, "2"]) -> StepRequest:
+    """The underlying 2D step, [KB92a] section 3: as long as the curves beside the footsteps."""
+    following = 0.0
+    if step.following is not None:
+        following = float(np.hypot(*(step.following.middle - step.target.middle)))
+    least = SHORTEST * body.leg_length
+    previous, length = (round(max(float(v), least), 12) for v in lengths)
+    return StepRequest(
+        side=step.stance.side,
+        previous_length=0.0 if step.kind == "start" else previous,
+        length=0.0 if step.kind == "stop" else length,
+        next_length=0.0 if following < 1e-9 else round(max(following, least), 12),
+        duration=round(step.duration, 12),
+        rise=round(float(step.target.position[1] - step.stance.position[1]), 12),
+        kind=step.kind,
+    )
+
+
+def _rounded(state: WalkerState) -> float | None:
+    return None if state.hip_height is None else round(state.hip_height, 12)
+
+
+def _bend_ends(straight: list[bool], lengths: Float[np.ndarray, "S 2"], anchor: float) -> None:
+    """Where a straight part joins a curve, draw it as the curve is drawn up to a steady step.
+
+    Steps off the grid of the table differ from the straight walk's by a hair; steady steps are
+    on it, so the change from one to the other is made there and nothing jumps.
+    """
+    for i in range(1, len(straight)):
+        if straight[i] and not straight[i - 1] and abs(lengths[i, 0] - anchor) > 1e-9:
+            straight[i] = False
+    for i in range(len(straight) - 2, -1, -1):
+        if straight[i] and not straight[i + 1] and abs(lengths[i, 1] - anchor) > 1e-9:
+            straight[i] = False
 
 
 def _standing(steps: Sequence[PlannedStep]) -> Float[np.ndarray, "S 2 2"]:

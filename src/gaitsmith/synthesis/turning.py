@@ -20,7 +20,7 @@ NECK, HEAD, SPINE = 0.4, 0.35, 0.25
 LARGEST_GAZE = float(np.radians(60.0))
 #: Lean of the trunk over the lean that is asked for, by way of banking. "trunk": upper body and
 #: head are 0.6 of the mass, a third of the height above the hips.
-TRUNK_LEAN = {"trunk": 4.2}
+TRUNK_LEAN = {"trunk": 10.0}
 
 
 def bent_upper(
@@ -40,8 +40,11 @@ def bent_upper(
     turns[:, 1] = SPINE * yaw / count
     turns[:, 2] = -roll / count
     first = exp(turns)
-    for i in range(count):
+    same = count > 1 and bool((upper[:, 1:count] == upper[:, :1]).all())  # usual: shared evenly
+    for i in range(1 if same else count):
         out[:, i] = log(multiply(first, exp(upper[:, i])))
+    if same:
+        out[:, 1:count] = out[:, :1]
     for i, share in ((count, NECK), (count + 1, HEAD)):
         out[:, i] = log(multiply(about("y", share * yaw), exp(upper[:, i])))
     return out
