@@ -127,7 +127,8 @@ class _Grid:
         self._asker, self._body = asker, body
         self._anchor, self._grain = anchor, GRAIN * body.leg_length
         self._lowest = int(np.ceil((0.5 * SHORTEST * body.leg_length - anchor) / self._grain))
-        self._duration = float(np.median([r.duration for r in requests])) if requests else 0.5
+        values, counts = np.unique([round(r.duration, 2) for r in requests], return_counts=True)
+        self._duration = float(values[counts.argmax()])
         self._highest: int | None = None
 
     def _node(self, index: int) -> float:

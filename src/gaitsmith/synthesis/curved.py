@@ -100,7 +100,7 @@ class CurvedGenerator:
         bent = Bent.of(steps)
         requests = [_request(body, s, bent.length[i]) for i, s in enumerate(steps)]
         tabled = not self._exact and len(steps) > 1
-        anchor = round(float(np.median(bent.length[:, 1])), 12)
+        anchor = _steady(bent.length[:, 1])
         straight = [not self._exact and is_straight(s) for s in steps]
         if tabled and not all(straight):
             _bend_ends(straight, bent.length, anchor)
@@ -234,6 +234,13 @@ def _request(body: Body, step: PlannedStep, lengths: Float[np.ndarray, "2"]) -> 
         rise=round(float(step.target.position[1] - step.stance.position[1]), 12),
         kind=step.kind,
     )
+
+
+def _steady(lengths: Float[np.ndarray, "S"]) -> float:
+    """The length that most steps have, if some have one; editing a step does not change it."""
+    values, counts = np.unique(np.round(lengths, 9), return_counts=True)
+    i = int(counts.argmax())
+    return float(values[i]) if counts[i] >= 3 else 0.0
 
 
 def _rounded(state: WalkerState) -> float | None:

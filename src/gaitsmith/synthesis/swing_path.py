@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 #: Meters between the axes of the feet in passing, at least, in turns; narrower footsteps keep
 #: their own distance.
 APART = 0.085
+#: The push is sought in such parts (m), so many times.
+PUSH, MOST_PUSHES = 0.015, 13
 #: Turn (radians) and change of width (m) of a step from which it is fully kept so.
 TURNS, SHIFTS = 0.10, 0.02
 
@@ -78,23 +80,43 @@ class SwingPath:
         i = flat.step[swinging]
         shape = push_shape(flat.swing[swinging])
         plain, heading = self._plan(bent, flat, swinging)
-        push = np.array(self.push)
         foot = body.foot
-        for _ in range(3):
-            ankle = plain + (push[i] * shape)[:, None] * self.away[i]
-            gap = feet_apart(
+
+        def apart(which: np.ndarray, ankle: np.ndarray, facing: np.ndarray) -> np.ndarray:
+            return feet_apart(
                 ankle,
-                heading,
-                bent.place[i, 1],
-                bent.heading[i, 1],
+                facing,
+                bent.place[which, 1],
+                bent.heading[which, 1],
                 back=foot.heel,
                 front=foot.ball + foot.toes,
             )
-            need = np.maximum(0.0, APART - gap) / np.maximum(shape, 0.35)
-            more = np.zeros(len(push))
-            np.maximum.at(more, i, need)
-            push = push + weight * more
-        return SwingPath(self.curve, self.whole, push, self.away)
+
+        # no farther than the feet stand apart before and after
+        every = np.arange(len(self.push))
+        ends = [apart(every, bent.place[:, k], bent.heading[:, k]) for k in (0, 2)]
+        want = np.minimum(APART, np.minimum(*ends))
+        push, missing = np.zeros(len(self.push)), np.zeros(len(self.push))
+        best, least = np.zeros(len(push)), np.full(len(push), np.inf)
+        search = np.ones(len(i), dtype=np.bool_)
+        for k in range(MOST_PUSHES):
+            j = i[search]
+            ankle = plain[search] + (push[j] * shape[search])[:, None] * self.away[j]
+            short = np.full(len(push), -np.inf)
+            np.maximum.at(short, j, want[j] - apart(j, ankle, heading[search]))
+            done = (short <= 0.0) & (short > -np.inf)
+            if k:  # between the last two tries
+                share = missing / np.maximum(missing - short, 1e-9)
+                met = push - PUSH * (1.0 - share)
+                best, least = np.where(done, met, best), np.where(done, -1.0, least)
+            better = (short > 0.0) & (short < least - 1e-4)
+            best, least = np.where(better, push, best), np.where(better, short, least)
+            search &= ~done[i]
+            if not search.any():
+                break
+            missing = np.where(short > 0.0, short, missing)
+            push = np.where(short > 0.0, push + PUSH, push)
+        return SwingPath(self.curve, self.whole, weight * best, self.away)
 
     def _plan(
         self, bent: Bent, flat: Flat2D, which: np.ndarray
