@@ -26,7 +26,17 @@ def walk(
             help="File to write; the suffix says what. Repeatable.",
         ),
     ],
-    distance: Annotated[float, typer.Option(help="How far to walk, straight ahead, meters.")],
+    distance: Annotated[
+        float | None, typer.Option(help="How far to walk, straight ahead, meters.")
+    ] = None,
+    path: Annotated[
+        str | None,
+        typer.Option(metavar="POINTS", help='Curve through "x,z x,z ...", or through FILE.csv.'),
+    ] = None,
+    steps: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Footsteps: side,x,z,heading_deg[,y][,time] CSV."),
+    ] = None,
     body: Annotated[
         str, typer.Option(help="Height in meters, a name of `list bodies`, FILE.toml or FILE.bvh.")
     ] = "1.75",
@@ -56,6 +66,8 @@ def walk(
     with collected_warnings() as said:
         motion = pipeline.walk(
             distance=distance,
+            path=path,
+            steps=steps,
             body=body,
             gait=gait,
             step_length=step_length,

@@ -58,6 +58,27 @@ class _Line:
         return float((foot.position - self.here) @ self.left)
 
 
+def is_straight(step: PlannedStep) -> bool:
+    """Whether :class:`StraightGenerator` walks this step: no turn, two parallel lines, no lean.
+
+    A start or stop must have its feet side by side.
+    """
+    stance, target, origin = step.stance, step.target, step.origin
+    if not (stance.direction == target.direction == origin.direction):
+        return False
+    if stance.lean != (0.0, 0.0) or target.lean != (0.0, 0.0) or origin.lean != (0.0, 0.0):
+        return False
+    if stance.gaze != (0.0, 0.0) or target.gaze != (0.0, 0.0) or origin.gaze != (0.0, 0.0):
+        return False
+    way, left = ahead(stance.direction), leftward(stance.direction)
+    to_target, to_origin = target.position - stance.position, origin.position - stance.position
+    if abs(float((to_target - to_origin) @ left)) > STRAIGHT:
+        return False
+    if step.kind == "start" and abs(float(to_origin @ way)) > STRAIGHT:
+        return False
+    return step.kind != "stop" or abs(float(to_target @ way)) <= STRAIGHT
+
+
 @dataclass(frozen=True)
 class _Setting:
     """How a step lies on its line; pairs are (stance, swing). Equal settings share curves."""
