@@ -22,6 +22,7 @@ from gaitsmith.plan.given import GivenSteps, plan_given
 from gaitsmith.plan.lengths import Stance
 from gaitsmith.plan.pace import UNUSUAL_FROUDE, Pace, choose_pace, froude
 from gaitsmith.plan.paths import Path as WalkPath
+from gaitsmith.plan.rhythm import Rhythm
 from gaitsmith.plan.where import read_where
 from gaitsmith.synthesis.curved import BANKINGS, CurvedGenerator
 from gaitsmith.synthesis.sample import sample_walk
@@ -87,6 +88,7 @@ def walk(
     toe_out: float | tuple[float, float] | None = None,
     manner: Manner | None = None,
     banking: str = "body",
+    variation: float = 0.0,
     fps: float = 60.0,
     seed: int = 0,
 ) -> Motion:
@@ -132,8 +134,11 @@ def walk(
         do), ``"trunk"`` (the trunk alone, as [KB92a]) or ``"none"``.
     fps
         Frames per second; frame ``i`` is at ``i / fps`` seconds.
+    variation
+        Natural variation from step to step along a path: 0 none, 1 as people vary; speed drifts
+        slowly, step widths vary at once. See :mod:`gaitsmith.plan.rhythm`.
     seed
-        Part of the recipe. This walk has no randomness: it changes nothing yet.
+        Of the variation.
 
     Returns
     -------
@@ -199,15 +204,22 @@ def walk(
             "toe_out": stance.toe_out,
             "manner": asdict(manner),
             **({} if distance is not None else {"banking": banking}),
+            **({"variation": variation} if variation else {}),
             "fps": fps,
             "seed": seed,
         },
     }
     ground = GROUNDS["flat"]()
     keep = cadence is not None
-    plan = _plan(
-        where, who, pace, stance, ground, start, stop, keep=keep, outside=banking == "body"
+    own = style.habits
+    rhythm = Rhythm(
+        lengths=own.lengths if own and step_length is None else (1.0, 1.0),
+        durations=own.durations if own and cadence is None else (1.0, 1.0),
+        variation=variation,
+        seed=seed,
     )
+    outside = banking == "body"
+    plan = _plan(where, who, pace, stance, rhythm, ground, start, stop, keep=keep, outside=outside)
     if step_length is not None and isinstance(where, WalkPath):
         _warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
     generator = CurvedGenerator(style.walk, ground, style.overlay, banking=banking)
@@ -220,6 +232,7 @@ def _plan(
     body: Body,
     pace: Pace,
     stance: Stance,
+    rhythm: Rhythm,
     ground: Ground,
     start: str,
     stop: str,
@@ -238,6 +251,8 @@ def _plan(
             start=start,
             stop=stop,
             keep_cadence=keep,
+            rhythm=rhythm,
+            stature=body.height,
         )
     if isinstance(where, GivenSteps):
         return plan_given(where, body=body, pace=pace, ground=ground)

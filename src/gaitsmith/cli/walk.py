@@ -54,6 +54,9 @@ def walk(
     toe_out: Annotated[
         float | None, typer.Option(help="Degrees that each foot turns out; else the gait's own.")
     ] = None,
+    vary: Annotated[
+        float, typer.Option(help="Natural variation from step to step: 0 none, 1 as people.")
+    ] = 0.0,
     fps: Annotated[float, typer.Option(help="Frames per second.")] = 60.0,
     seed: Annotated[int, typer.Option(help="Seed of what is random; recorded.")] = 0,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -77,6 +80,7 @@ def walk(
             stop=stop,
             step_width=step_width,
             toe_out=None if toe_out is None else math.radians(toe_out),
+            variation=vary,
             fps=fps,
             seed=seed,
         )

@@ -24,9 +24,10 @@ from gaitsmith.plan.lengths import (
     Stance,
     stride_lengths,
 )
+from gaitsmith.plan.rhythm import Rhythm
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
     from gaitsmith.body.body import Body
     from gaitsmith.conventions import StepKind
@@ -81,6 +82,8 @@ def follow(
     start: str = "stand",
     stop: str = "stand",
     keep_cadence: bool = False,
+    rhythm: Rhythm | None = None,
+    stature: float = 1.75,
 ) -> StepPlan:
     """Footsteps along ``path``.
 
@@ -102,6 +105,11 @@ def follow(
         0 is a heel strike at the first point; the end is the last heel strike on the path.
     keep_cadence
         Slow down in curves by shorter steps alone.
+    rhythm
+        What makes steps unequal; None: nothing. Those that start, stop or fit the end are left
+        as they are, and the way is kept.
+    stature
+        Of who walks, meters: for how much step widths vary.
 
     Raises
     ------
@@ -117,7 +125,8 @@ def follow(
         )
     power = 1.0 if keep_cadence else LENGTH_SHARE
     stretch = _stretch(path, pace.step_length, power)
-    lengths, real = _landings(path, stretch, pace.step_length, start, stop)
+    rhythm = rhythm or Rhythm()
+    lengths, real = _landings(path, stretch, pace.step_length, start, stop, rhythm)
     kinds: list[StepKind] = ["walk"] * len(lengths)
     if start == "stand":
         kinds[0] = "start"
@@ -132,11 +141,14 @@ def follow(
     if power < 1.0 and len(stretch.along) > 2:
         middle = 0.5 * (along[2:] + along[1:-1])
         eased = eased * np.interp(middle, stretch.along, stretch.slowing) ** (power - 1.0)
-    time = np.concatenate([[0.0, 0.0], np.cumsum(eased * pace.step_duration)])
     # the first to land is the right one; so mid-walk it is the rear one
     side = np.arange(len(along)) % 2
     side[2:] = 1 - side[2:]
     side[:2] = [LEFT, RIGHT] if start == "stand" else [RIGHT, LEFT]
+    steady = np.array([kind == "walk" for kind in kinds])
+    if not rhythm.even:
+        eased = eased * rhythm.factors(side[2:], steady)[1]
+    time = np.concatenate([[0.0, 0.0], np.cumsum(eased * pace.step_duration)])
     direction = path.heading_at(along)
     count = max(2, int(np.ceil((path.length - min(along[0], 0.0)) / PATH_SPACING)) + 1)
     shown = np.linspace(float(min(along[0], 0.0)), path.length, count)
@@ -147,7 +159,8 @@ def follow(
         middle = middle - (lean_lever(body) * lean)[:, None] * outside
     width = stance.width + _widening(direction, kinds, stance)
     position = np.stack([middle[:, 0], np.zeros(len(along)), middle[:, 1]], axis=-1)
-    position += (0.5 * width * SIDE_SIGN[side])[:, None] * leftward(direction)
+    beside = 0.5 * width + _aside(rhythm, stance, stature, np.append([False, False], steady))
+    position += (beside * SIDE_SIGN[side])[:, None] * leftward(direction)
     position[:, 1] = ground.height(position[:, 0], position[:, 2])
     return StepPlan(
         side=side,
@@ -163,19 +176,42 @@ def follow(
     )
 
 
+def _aside(
+    rhythm: Rhythm, stance: Stance, stature: float, free: Bool[np.ndarray, "N"]
+) -> Float[np.ndarray, "N"]:
+    """Meters that footsteps vary outward; never so far in that the feet would touch."""
+    if not rhythm.variation:
+        return np.zeros(len(free))
+    return np.where(free, np.maximum(rhythm.aside(len(free), stature), -0.2 * stance.width), 0.0)
+
+
 def _landings(
-    path: Path, stretch: _Stretch, length: float, start: str, stop: str
+    path: Path, stretch: _Stretch, length: float, start: str, stop: str, rhythm: Rhythm
 ) -> tuple[list[float], Float[np.ndarray, "n"]]:
     """Stretched step lengths, and the arc lengths at which the steps land."""
     real, sharp = np.zeros(2), np.zeros(1, dtype=np.int64)
     for _ in range(30):
         lengths = stride_lengths(stretch.whole, length, start, stop)
+        lengths = lengths if rhythm.even else _unequal(lengths, length, rhythm)
         real = stretch.real(np.cumsum([0.0, *lengths]))
         sharp = np.flatnonzero(np.abs(np.diff(path.heading_at(real))) > LARGEST_TURN)
         if not sharp.size:
             return lengths, real
         stretch = _denser(stretch, real, sharp, length, path)
     raise _too_sharp(path, float(real[sharp[0]]), float(real[sharp[0] + 1]))
+
+
+def _unequal(lengths: list[float], length: float, rhythm: Rhythm) -> list[float]:
+    """Full steps made unequal, the way they take together kept."""
+    real = np.array(lengths)
+    full = np.abs(real - length) < 1e-9
+    if full.sum() < 2:
+        return lengths
+    side = (np.arange(len(real)) + RIGHT) % 2  # the first to land is the right one
+    factor, _ = rhythm.factors(side, full)
+    uneven = np.where(full, length * factor, real)
+    uneven[full] *= real[full].sum() / uneven[full].sum()
+    return uneven.tolist()
 
 
 def curve_share(path: Path, pace: Pace, *, keep_cadence: bool = False) -> float:
