@@ -159,6 +159,7 @@ def follow(
         middle = middle - (lean_lever(body) * lean)[:, None] * outside
     width = stance.width + _widening(direction, kinds, stance)
     position = np.stack([middle[:, 0], np.zeros(len(along)), middle[:, 1]], axis=-1)
+    steady[-2:] &= stop == "walk"  # both feet stand where the way ends
     beside = 0.5 * width + _aside(rhythm, stance, stature, np.append([False, False], steady))
     position += (beside * SIDE_SIGN[side])[:, None] * leftward(direction)
     position[:, 1] = ground.height(position[:, 0], position[:, 2])
