@@ -266,7 +266,8 @@ def _too_sharp(path: Path, first: float, last: float) -> InfeasibleError:
     where = path.at(np.array([s[int(rates.argmax())]]))[0]
     turn = abs(float(np.diff(path.heading_at(np.array([first, last])))[0]))
     return InfeasibleError(
-        f"the path turns by {np.degrees(turn):.0f} deg at ({where[0]:.2f}, {where[1]:.2f}), more "
+        f"the path turns by {np.degrees(turn):.0f} deg at "
+        f"({where[0] + 0.0:.2f}, {where[1] + 0.0:.2f}), more "
         f"than the {np.degrees(LARGEST_TURN):.0f} deg that one step can turn, however short; "
         "round the corner (0.6 m is walked well) or set a stop there"
     )

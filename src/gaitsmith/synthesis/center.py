@@ -75,9 +75,24 @@ def track(
         rise = last[:, 0] - first[:, 0]
         return first[:, 0] + u * u * (3.0 - 2.0 * u) * rise + u * v * (v * begins - u * ends)
 
+    def led_rate(values: Float[np.ndarray, "S 3 2"]) -> Float[np.ndarray, "M"]:
+        """Change per meter."""
+        first = np.where(later[:, None], values[i, 1], values[i, 0])
+        last = np.where(later[:, None], values[i, 2], values[i, 1])
+        v, size = 1.0 - u, np.maximum(chord, 1e-9)
+        rise = (last[:, 0] - first[:, 0]) / size
+        slope = (
+            6.0 * u * v * rise
+            + v * (1.0 - 3.0 * u) * first[:, 1]
+            + u * (3.0 * u - 2.0) * last[:, 1]
+        )
+        return np.where(chord > 1e-6, slope, 0.0)
+
     lean, gaze = led(bent.lean), led(bent.gaze)
     left = np.stack([np.cos(heading), -np.sin(heading)], axis=-1)
     place = place + (offset * lean)[:, None] * left
+    # hips that draw inside or come back face where they go themselves
+    heading = heading + np.arctan(offset * led_rate(bent.lean))
     resting = np.any(standing[:, 0] != 0.0, axis=-1) | (bent.length[:, 0] < 1e-9)
     if standing.any():
         begins = 1.0 - smoothstep(flat.phase / STANDING_SHARE)
@@ -95,6 +110,7 @@ def anchored(
     behind the new foot, so that nothing drifts (erratum D10).
     """
     tracked = track(bent, flat, offset, standing=standing)
+    tracked_place = tracked.place - (offset * tracked.lean)[:, None] * tracked.left
     i, first, last = flat.step, flat.first, flat.last
     x = flat.center[:, 0]
     way = np.stack([np.sin(bent.direction), np.cos(bent.direction)], axis=-1)
@@ -120,10 +136,19 @@ def anchored(
     held = (bent.length[:, 0] < 1e-9) | (bent.length[:, 1] < 1e-9)  # starts and stops: as above
     held = held | np.any(standing != 0.0, axis=(1, 2))
     keep = held[i]
-    del first
+    # they join what the paper's steps begin and end with
+    begun = (bent.length[:, 0] > 1e-9)[:, None]
+    gone = (bent.length[:, 1] > 1e-9)[:, None]
+    start = begun * (straight[first] - tracked_place[first])
+    end = gone * (there - tracked_place[last])
+    turn0 = begun[:, 0] * (bent.direction[:, 1] - tracked.heading[first])
+    turn1 = gone[:, 0] * (bent.direction[:, 2] - tracked.heading[last])
+    ease = smoothstep(flat.phase)
+    held_place = tracked.place + (1.0 - ease)[:, None] * start[i] + ease[:, None] * end[i]
+    held_heading = tracked.heading + (1.0 - ease) * turn0[i] + ease * turn1[i]
     return CenterPath(
-        np.where(keep[:, None], tracked.place, place),
-        np.where(keep, tracked.heading, heading),
+        np.where(keep[:, None], held_place, place),
+        np.where(keep, held_heading, heading),
         np.where(keep[:, None], tracked.left, left),
         tracked.lean,
         tracked.gaze,
