@@ -1,0 +1,398 @@
+"""A gait from markers: the best closed stride of the legs, on a body of their lengths.
+
+What is measured are the legs' angles in the plane that holds hip, ankle and the walk's
+direction, the soles' and toes' against where they stand flat, and the hips' path. Everything
+above stays at rest: it moves by rules. ``docs/reference/markers.md`` says what is derived how.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.body.rig import skeleton_of
+from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, SIDES
+from gaitsmith.errors import InfeasibleError
+from gaitsmith.gait.cycle import EVENTS, Cycle
+from gaitsmith.gait.events import FootPath, Stance, check_order, stances
+from gaitsmith.gait.learn import SAMPLES, Learned, standing_feet, symmetrized
+from gaitsmith.gait.marker_body import FlatFoot, body_of_legs, flat_foot
+from gaitsmith.gait.marker_joints import MarkerLeg, MarkerWalker, walker_of
+from gaitsmith.geometry.curves import hermite, parabola_slopes, smoothstep
+from gaitsmith.geometry.rotations import IDENTITY, about, from_euler, inverse, multiply
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jaxtyping import Float
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.motion.motion import Markers
+
+#: Shares of a stride: the longest blend, and the shortest worth one (else the gap is spread).
+_LONGEST, _SHORTEST = 0.6, 0.15
+#: Least double support after each heel strike, and between events of a foot, shares of the stride.
+_DOUBLE, _APART = 0.02, 0.004
+#: Frames by which a clip may miss the ends of its only stride.
+_SPARE = 1.5
+#: Columns of the hips and of each leg.
+_HIPS = ("x", "y", "z", "yaw", "lean", "list")
+_LEG = ("thigh", "knee", "aside", "pitch", "toes")
+#: Of _HIPS: what a mirror reverses.
+_MIRROR = np.array([-1.0, 1.0, 1.0, -1.0, 1.0, -1.0])
+
+
+@dataclass(frozen=True)
+class _Span:
+    """A stride that could be taken, from one heel strike to the next of the same foot."""
+
+    side: int
+    begin: float
+    end: float
+
+    @property
+    def duration(self) -> float:
+        return self.end - self.begin
+
+
+@dataclass(eq=False)
+class _Clip:
+    walker: MarkerWalker
+    found: list[Stance]
+    feet: dict[int, FlatFoot]
+
+    @property
+    def last(self) -> float:
+        """Seconds of the last frame."""
+        return (len(self.leg.hip) - 1) / self.walker.rate
+
+    @property
+    def leg(self) -> MarkerLeg:
+        return next(iter(self.walker.legs.values()))
+
+
+def learn_from_markers(
+    markers: Markers,
+    *,
+    height: float | None = None,
+    symmetric: bool = False,
+    events: Sequence[Stance] | None = None,
+    source: str = "",
+    license: str = "",
+) -> Learned:
+    """The best closed stride of the legs that wear ``markers``.
+
+    Parameters
+    ----------
+    markers
+        Of one leg or both; any names, any direction, over ground or on a treadmill.
+    height
+        Stature, meters; None: that of average people with such legs.
+    symmetric
+        Average the stride with its mirror image half a stride later.
+    events
+        Stances to use instead of those found, seconds.
+    source, license
+        Where the markers come from and what may be done with them; kept with the stride.
+
+    Raises
+    ------
+    InfeasibleError
+        If there is no whole leg, no stride from one heel strike to the next of the same foot,
+        or if it is running.
+    """
+    notes: list[str] = []
+    unsaid = RIGHT if not events else min(events, key=lambda s: s.heel_strike).side
+    walker = walker_of(markers, unsaid, notes)
+    found = _stances(walker, events)
+    spans = _spans(found, walker)
+    feet = {side: flat_foot(leg, side, found, walker) for side, leg in walker.legs.items()}
+    clip = _Clip(walker, found, feet)
+    spans = [s for s in spans if _ahead(clip, s)[2] > 0.3 * clip.leg.length]
+    if not spans:
+        raise InfeasibleError("no stride of the markers leads forward")
+    usual = float(np.median([s.duration for s in spans]))
+    span = min(spans, key=lambda s: _score(clip, s, usual))
+    if not walker.flat:
+        way = _ahead(clip, span)
+        walker = walker.turned(float(np.arctan2(way[0], way[2])))
+        feet = {side: flat_foot(leg, side, found, walker) for side, leg in walker.legs.items()}
+        clip = _Clip(walker, found, feet)
+    return _learned(clip, span, height, symmetric, notes, source, license)
+
+
+def _stances(walker: MarkerWalker, events: Sequence[Stance] | None) -> list[Stance]:
+    legs = walker.legs
+    if events is None:
+        paths = {s: FootPath(g.ankle, g.heel, g.ball, g.tip) for s, g in legs.items()}
+        length = float(np.mean([g.length for g in legs.values()]))
+        return stances(paths, walker.rate, speed=walker.speed, leg_length=length)
+    found = sorted(events, key=lambda s: s.heel_strike)
+    if other := [s for s in found if s.side not in legs]:
+        raise InfeasibleError(
+            f"the events are of the {SIDES[other[0].side]} foot, whose markers are not here"
+        )
+    return found
+
+
+def _spans(found: list[Stance], walker: MarkerWalker) -> list[_Span]:
+    """Every stride of either foot of which all events are known."""
+    shown = [s for s in found if s.cut != "both"]
+    if len(walker.legs) == 2:
+        check_order(shown)
+    out: list[_Span] = []
+    for side in walker.legs:
+        own = [s for s in shown if s.side == side and s.cut != "start"]
+        out += [_Span(side, a.heel_strike, b.heel_strike) for a, b in pairwise(own)]
+    if out and all(_known(found, side, event) for side in walker.legs for event in (0, 3)):
+        return out
+    known = "; ".join(
+        f"{SIDES[s.side]} {s.heel_strike:.2f}-{s.toe_off:.2f} s"
+        + (f" (cut at {s.cut})" if s.cut else "")
+        for s in found
+    )
+    raise InfeasibleError(
+        "the markers hold no stride: from one heel strike to the next of the same foot, with every "
+        f"toe-off between. Feet on the ground: {known or 'none found'}. Give a longer clip (1.6 "
+        "strides), or the events if they are known (--events)"
+    )
+
+
+def _known(found: list[Stance], side: int, event: int) -> list[float]:
+    """Times of an event of a foot, of those stances that show it."""
+    hidden = ("start", "both") if event < 2 else ("end", "both")
+    return [s.times[event] for s in found if s.side == side and s.cut not in hidden]
+
+
+def _place(clip: _Clip, side: int, strike: float) -> Float[np.ndarray, "3"] | None:
+    """Where the ball of the foot stands after it struck, meters; None if the clip ends before."""
+    stance = next(s for s in clip.found if s.side == side and s.heel_strike == strike)
+    rate = clip.walker.rate
+    a, b = stance.foot_flat, min(stance.heel_off, clip.last)
+    if b - a < 0.1:
+        return None
+    return clip.walker.legs[side].ball[round(a * rate) : round(b * rate) + 1].mean(0)
+
+
+def _ahead(clip: _Clip, span: _Span) -> Float[np.ndarray, "3"]:
+    """How far the foot gets in a stride: where it stands, else where its heel strikes."""
+    first, last = (_place(clip, span.side, t) for t in (span.begin, span.end))
+    if first is None or last is None:
+        heel = clip.walker.legs[span.side].heel
+        first, last = _read(heel, np.array([span.begin, span.end]) * clip.walker.rate)
+    return last - first
+
+
+def _read(values: Float[np.ndarray, "F C"], at: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n C"]:
+    frames = np.arange(len(values), dtype=np.float64)
+    return hermite(frames, values, parabola_slopes(frames, values), at)
+
+
+def _score(clip: _Clip, span: _Span, usual: float) -> float:
+    """How ill a stride closes and how unusual it is."""
+    ends = np.array([span.begin, span.end]) * clip.walker.rate
+    gap = 0.0
+    for leg in clip.walker.legs.values():
+        shape = np.concatenate([leg.knee - leg.hip, leg.ankle - leg.hip], axis=-1)
+        one, two = _read(shape, ends)
+        gap = max(gap, float(np.abs(two - one).max()) / leg.length)
+    early = max(0.0, _LONGEST - (clip.last - span.end) / span.duration)
+    return gap + 4.0 * abs(span.duration / usual - 1.0) + 0.02 * early
+
+
+def _learned(
+    clip: _Clip,
+    span: _Span,
+    height: float | None,
+    symmetric: bool,
+    notes: list[str],
+    source: str,
+    license: str,
+) -> Learned:
+    body = body_of_legs(clip.walker, clip.feet, height, notes)
+    length = float(_ahead(clip, span)[2])
+    events = _phases(clip, span, notes)
+    hips, legs = _closed(clip, span, length, events, notes)
+    if len(clip.walker.legs) == 1:
+        side = span.side
+        notes.append(
+            f"only the {SIDES[side]} leg was measured: the other does the same half a stride later"
+        )
+    _hold_straight(legs, body, notes)
+    cycle = Cycle(
+        skeleton=skeleton_of(body),
+        center=hips[:, :3],
+        rotations=_posed(body, hips, legs, clip),
+        events=events,
+        stride_length=length,
+        duration=span.duration,
+        source=source,
+        license=license,
+    )
+    if symmetric and len(clip.walker.legs) == 2:
+        cycle = symmetrized(cycle)
+        notes.append("left and right made mirror images of each other")
+    feet = standing_feet(cycle)
+    middle = 0.5 * (feet.place[0, 0] + feet.place[1, 0])
+    cycle = cycle.with_(center=cycle.center - [middle, feet.height, cycle.center[:, 2].mean()])
+    right = float(feet.place[1, 1] - feet.place[0, 1])
+    return Learned(
+        cycle=cycle,
+        body=body,
+        stances=tuple(clip.found),
+        span=(span.begin, span.end),
+        step_lengths=(length - right, right),
+        step_width=float(feet.place[0, 0] - feet.place[1, 0]),
+        toe_out=(float(feet.heading[0]), float(-feet.heading[1])),
+        notes=tuple(notes),
+    )
+
+
+def _phases(clip: _Clip, span: _Span, notes: list[str]) -> Float[np.ndarray, "2 4"]:
+    """Events of [left, right] as stride phases, the left heel strike at 0."""
+    out = np.empty((2, 4))
+    middle = 0.5 * (span.begin + span.end)
+    for side in clip.walker.legs:
+        for event in range(len(EVENTS)):
+            times = _known(clip.found, side, event)
+            if event in (1, 2) and not times:
+                raise InfeasibleError(
+                    f"the markers do not show the {SIDES[side]} foot flat on the ground in a stance"
+                )
+            # of several strides, the one that is taken
+            wanted = span.begin + 0.3 * span.duration if side == span.side else middle
+            out[side, event] = min(times, key=lambda t: abs(t - wanted)) / span.duration
+    for side in (LEFT, RIGHT):
+        if side not in clip.walker.legs:
+            out[side] = out[1 - side] + 0.5
+    out[span.side, 0] = span.begin / span.duration
+    since = (out - out[:, :1]) % 1.0
+    strike = (out[:, 0] - out[0, 0]) % 1.0
+    stretched = False
+    for side, other in ((LEFT, RIGHT), (RIGHT, LEFT)):
+        least = (strike[other] - strike[side]) % 1.0 + _DOUBLE
+        if since[side, 3] < least:
+            since[side, 3], stretched = least, True
+    if stretched:
+        notes.append("double support was under 4 % of the stride: stretched to that")
+    for own in since:
+        for i in (1, 2):
+            own[i] = max(own[i], own[i - 1] + _APART)
+        for i in (2, 1):
+            own[i] = min(own[i], own[i + 1] - _APART)
+    return (strike[:, None] + since) % 1.0
+
+
+def _columns(clip: _Clip) -> Float[np.ndarray, "F C"]:
+    """Hips and measured legs, frame by frame: :data:`_HIPS`, then :data:`_LEG` of each leg."""
+    walker = clip.walker
+    legs = walker.legs
+    count = len(clip.leg.hip)
+    turn = np.zeros((count, 3))
+    if len(legs) == 2 and not walker.flat:
+        across = legs[LEFT].hip - legs[RIGHT].hip
+        turn[:, 0] = np.arctan2(-across[:, 2], across[:, 0])
+        turn[:, 2] = np.arctan2(across[:, 1], np.hypot(across[:, 0], across[:, 2]))
+    if walker.tilt is not None:
+        turn[:, 1] = walker.tilt - walker.tilt.mean()
+    center = np.mean([g.hip for g in legs.values()], axis=0)
+    return np.concatenate(
+        [center, turn, *(_angles(leg, clip.feet[side]) for side, leg in legs.items())], axis=1
+    )
+
+
+def _angles(leg: MarkerLeg, foot: FlatFoot) -> Float[np.ndarray, "F 5"]:
+    """Columns :data:`_LEG`: thigh and knee in the leg's plane, and how far that leans aside."""
+    ankle = leg.ankle + foot.beside
+    line = ankle - leg.hip
+    aside = np.arctan2(line[:, 0], -line[:, 1])
+    out = [aside]
+    for bone in (leg.knee - leg.hip, leg.ankle - leg.knee):
+        down = np.sin(aside) * bone[:, 0] - np.cos(aside) * bone[:, 1]
+        out.append(np.arctan2(bone[:, 2], down))
+    pitch, toes = foot.pitch(leg)
+    return np.stack([out[1], out[1] - out[2], aside, pitch, toes], axis=-1)
+
+
+def _closed(
+    clip: _Clip, span: _Span, length: float, events: Float[np.ndarray, "2 4"], notes: list[str]
+) -> tuple[Float[np.ndarray, "K 6"], Float[np.ndarray, "2 K 5"]]:
+    """Hips less their travel and both legs on the samples of a stride from the left strike."""
+    rate, period = clip.walker.rate, span.duration
+    table = _columns(clip)
+    slack = clip.last - period
+    if slack < -_SPARE / rate:
+        raise InfeasibleError(f"the clip of {clip.last:.2f} s is shorter than its stride")
+    # after the stride what follows can be blended in; what came before it is as good
+    begin = min(span.begin, max(0.0, slack - _LONGEST * period))
+    blend = min(_LONGEST * period, clip.last - begin - period)
+    left = span.begin - float(events[span.side, 0]) * period
+    phase = np.arange(SAMPLES) / SAMPLES
+    travel = np.zeros(table.shape[1])
+    travel[_HIPS.index("z")] = length
+
+    def at(share: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n C"]:
+        """Columns at shares of the stride from ``begin``, less their travel."""
+        times = np.clip(begin + share * period, 0.0, clip.last)
+        return _read(table, times * rate) - share[:, None] * travel
+
+    share = (left - begin) / period + phase
+    share = share % 1.0
+    out = at(share)
+    if blend > _SHORTEST * period:
+        weight = smoothstep(share * period / blend)[:, None]
+        early = share * period < blend
+        out[early] = (weight * out)[early] + (1.0 - weight[early]) * at(share[early] + 1.0)
+    else:
+        notes.append("just one stride: what keeps it from closing is spread over it")
+        gap = at(np.array([1.0])) - at(np.array([0.0]))
+        out = out - (share[:, None] - 0.5) * gap
+    hips, legs = out[:, : len(_HIPS)], out[:, len(_HIPS) :].reshape(SAMPLES, -1, len(_LEG))
+    if legs.shape[1] == 2:
+        return hips, legs.transpose(1, 0, 2)
+    later = np.roll(np.arange(SAMPLES), -SAMPLES // 2)
+    hips = 0.5 * (hips + hips[later] * _MIRROR)
+    leg = legs[:, 0]
+    both = np.stack([leg, leg[later]] if span.side == LEFT else [leg[later], leg])
+    both[RIGHT if span.side == LEFT else LEFT, :, _LEG.index("aside")] *= -1.0
+    return hips, both
+
+
+def _hold_straight(legs: Float[np.ndarray, "2 K 5"], body: Body, notes: list[str]) -> None:
+    """Knees that bend backward on the skin held straight, hip to ankle as they were."""
+    thigh, knee = legs[..., 0], legs[..., 1]
+    over = np.maximum(-knee, 0.0)
+    if not over.any():
+        return
+    notes.append(
+        f"the knee markers bend backward by up to {np.degrees(over.max()):.1f} deg: held straight"
+    )
+    thigh += over * body.shin / body.leg_length
+    knee += over
+
+
+def _posed(
+    body: Body, hips: Float[np.ndarray, "K 6"], legs: Float[np.ndarray, "2 K 5"], clip: _Clip
+) -> Float[np.ndarray, "K J 4"]:
+    """Local rotations of the body's joints; those above the hips stay at rest."""
+    skeleton = skeleton_of(body)
+    out = np.tile(IDENTITY, (len(hips), len(skeleton), 1))
+    out[:, 0] = pelvis = from_euler("yxz", hips[:, 3:])
+    for side, name in enumerate(SIDES):
+        thigh, knee, aside, pitch, toes = legs[side].T
+        upper = multiply(about("z", aside), about("x", -thigh))
+        lower = multiply(upper, about("x", knee))
+        other = next(iter(clip.feet))
+        heading = clip.feet[side].heading if side in clip.feet else -clip.feet[other].heading
+        foot = multiply(about("y", np.array(heading)), about("x", -pitch))
+        for part, local in (
+            ("UpperLeg", multiply(inverse(pelvis), upper)),
+            ("LowerLeg", about("x", knee)),
+            ("Foot", multiply(inverse(lower), foot)),
+            ("Toes", about("x", pitch - toes)),
+        ):
+            out[:, skeleton.index(f"{name}{part}")] = local
+    return out
