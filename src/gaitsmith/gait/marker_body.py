@@ -24,10 +24,14 @@ if TYPE_CHECKING:
 _LEG = 0.491
 #: Toe-out where the markers do not tell it: men's mean of 5.9 deg.
 _TOE_OUT = float(np.radians(6.0))
+#: Radians that a foot may turn out.
+_AHEAD = float(np.radians(60.0))
 #: Part of the time from foot flat to heel off in which a foot is surely flat.
 _FLAT = (0.05, 0.6)
 #: Range of ankle heights, and the usual one, over leg length.
 _ANKLES, _USUAL_ANKLE = (0.055, 0.16), 0.0795
+#: Shares of the usual heel that the landing may tell.
+_HEELS = (0.4, 1.3)
 #: Range of hip widths over stature that are believed.
 _HIP_WIDTHS = (0.06, 0.16)
 #: Step width over stature where the markers are of one plane.
@@ -48,6 +52,8 @@ class FlatFoot:
         Heading of the plane in which slopes are seen: the foot's, 0 in a sagittal table.
     beside
         ``(3,)`` what brings the ankle above the line of the foot, sideways, meters.
+    round_heel
+        How far ahead of the heel's marker the heel bears while the foot lands, meters.
     triangle
         Ankle above the line of heel and ball markers; from its foot back to the heel, forward
         to the ball; ball to toe tip, 0 without a marker there; meters.
@@ -60,6 +66,7 @@ class FlatFoot:
     told: bool
     plane: float
     beside: Float[np.ndarray, "3"]
+    round_heel: float
     triangle: tuple[float, float, float, float]
     zero: tuple[float, float]
 
@@ -76,15 +83,15 @@ class FlatFoot:
         return sole, _near_zero(toes, self.flat)
 
 
-def flat_foot(
-    leg: MarkerLeg, side: int, found: Sequence[Stance], walker: MarkerWalker
-) -> FlatFoot:
+def flat_foot(leg: MarkerLeg, side: int, found: Sequence[Stance], walker: MarkerWalker) -> FlatFoot:
     """How the foot of ``leg`` stands flat, the mean over its stances."""
     flat = _flat_frames(len(leg.hip), side, found, walker.rate)
     heading = float(SIDE_SIGN[side]) * _TOE_OUT
     if leg.aim is not None:
         way = (leg.aim - leg.heel)[flat].mean(0)
         heading = float(np.arctan2(way[0], way[2]))
+    if abs(heading) > _AHEAD or float((leg.ball - leg.heel)[flat, 2].mean()) < 0.0:
+        raise InfeasibleError("it walks backward or sideways; only walking ahead is learned")
     beside = np.zeros(3)
     if walker.flat:
         usual = body_from_height(_height_of(leg.length))
@@ -107,6 +114,7 @@ def flat_foot(
         told=leg.aim is not None,
         plane=plane,
         beside=beside,
+        round_heel=_round_heel(leg, side, found, walker.rate, flat, plane),
         triangle=(high, heel, float(length.mean()) - heel, toes),
         zero=(float(_slope(leg.heel, leg.ball, plane)[flat].mean()), toe_zero),
     )
@@ -118,7 +126,7 @@ def body_of_legs(
     height: float | None,
     notes: list[str],
 ) -> Body:
-    """The body of ``walker``: thigh and shin as they are while the foot bears flat, both sides' mean.
+    """The body of ``walker``: thigh and shin are the mean of both sides while the foot is flat.
 
     Markers on the skin slide along the bone, most in swing.
     """
@@ -182,6 +190,8 @@ def _foot(feet: dict[int, FlatFoot], usual: Body, leg: float, notes: list[str]) 
                 f"the {what} marker is {value:.3f} m from the ankle along a flat foot, about "
                 f"{normal:.3f} m were expected: are the markers of the foot exchanged?"
             )
+    bears = heel - float(np.mean([f.round_heel for f in feet.values()]))
+    heel = min(max(bears, _HEELS[0] * usual.foot.heel), _HEELS[1] * usual.foot.heel)
     if not 0.3 * ball <= toes <= ball:
         toes = ball * shares[2] / shares[1]
     return Foot(ankle_height=high, heel=heel, ball=ball, toes=toes)
@@ -218,6 +228,27 @@ def _slope(
 ) -> Float[np.ndarray, "F"]:
     d = _in_plane(tail, head, heading)
     return np.unwrap(np.arctan2(d[:, 1], d[:, 0]))
+
+
+def _round_heel(
+    leg: MarkerLeg,
+    side: int,
+    found: Sequence[Stance],
+    rate: float,
+    flat: Bool[np.ndarray, "F"],
+    plane: float,
+) -> float:
+    """How far ahead of its marker a heel bears: the marker rises as the foot turns about it."""
+    slope = _slope(leg.heel, leg.ball, plane)
+    slope = np.sin(slope - slope[flat].mean())
+    rise = leg.heel[:, 1] - leg.heel[flat, 1].mean()
+    time = np.arange(len(slope)) / rate
+    lands = np.zeros(len(slope), dtype=bool)
+    for s in found:
+        if s.side == side and s.cut not in ("start", "both"):
+            lands |= (time >= s.heel_strike) & (time <= s.foot_flat)
+    weight = float((slope[lands] ** 2).sum())
+    return 0.0 if weight < 0.05 else float((slope * rise)[lands].sum()) / weight
 
 
 def _near_zero(

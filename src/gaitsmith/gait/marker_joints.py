@@ -93,10 +93,9 @@ class MarkerWalker:
         turn = about("y", -heading)
         legs = {
             side: MarkerLeg(
-                *(
-                    None if p is None else rotate(turn, p)
-                    for p in (g.hip, g.knee, g.ankle, g.heel, g.ball, g.tip, g.aim)
-                )  # type: ignore[arg-type]
+                *(rotate(turn, p) for p in (g.hip, g.knee, g.ankle, g.heel, g.ball)),
+                tip=None if g.tip is None else rotate(turn, g.tip),
+                aim=None if g.aim is None else rotate(turn, g.aim),
             )
             for side, g in self.legs.items()
         }
@@ -129,11 +128,9 @@ def walker_of(markers: Markers, unsaid: int, notes: list[str]) -> MarkerWalker:
     paths = _smooth(markers, points, notes)
     if sides == [None]:
         notes.append(f"the markers name no side: taken as the {SIDES[unsaid]} leg")
-        paths = {(unsaid if p[0] is None else p[0], p[1]): v for p, v in paths.items()}
-        points = {p: "" for p in paths}
-        sides = [unsaid]
+        paths |= {(unsaid, role): path for (side, role), path in paths.items() if side is None}
+    found = [unsaid if side is None else side for side in sides]
     flat = bool((markers.positions[..., 0] == 0.0).all())
-    found = [side for side in sides if side is not None]
     paths, speed = _over_ground(paths, found, markers.rate, notes)
     if not flat and _left_handed(paths):
         notes.append("left is on the right of the walk: left-handed axes, seen in a mirror")
@@ -150,7 +147,7 @@ def _smooth(
     paths = {point: markers[name] for point, name in points.items()}
     if markers.rate < LEAST_RATE:
         return paths
-    # the fourth difference of white noise has 70 times its variance, that of a walk none to speak of
+    # the fourth difference of white noise has 70 times its variance, a walk's is next to nothing
     noise = [np.diff(path, n=4, axis=0)[:, np.ptp(path, axis=0) > 0.0] for path in paths.values()]
     if float(np.median([np.sqrt((d**2).mean() / 70.0) for d in noise])) < NOISY:
         return paths
@@ -212,12 +209,23 @@ def _over_ground(
 
 
 def _left_handed(paths: dict[Point, Float[np.ndarray, "F 3"]]) -> bool:
-    """Whether the left hip's, knee's or pelvis' markers are on the right."""
+    """Whether what is left, or on the outside of a leg, is on the wrong side of it."""
+
+    def beside(one: Point, other: Point) -> list[float]:
+        there = one in paths and other in paths
+        return [float((paths[one] - paths[other])[:, 0].mean())] if there else []
+
     apart = [
-        float((paths[LEFT, role] - path)[:, 0].mean())
-        for (side, role), path in paths.items()
-        if side == RIGHT and role in ("asis", "hip", "hip center") and (LEFT, role) in paths
+        d for role in ("asis", "hip", "hip center") for d in beside((LEFT, role), (RIGHT, role))
     ]
+    if not apart:
+        pairs = (("knee", "knee medial"), ("ankle", "ankle medial"), ("mt5", "mt1"))
+        apart = [
+            float(SIDE_SIGN[side]) * d
+            for side in (LEFT, RIGHT)
+            for outer, inner in pairs
+            for d in beside((side, outer), (side, inner))
+        ]
     return bool(apart) and float(np.mean(apart)) < 0.0
 
 

@@ -7,7 +7,7 @@ above stays at rest: it moves by rules. ``docs/reference/markers.md`` says what 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -21,8 +21,17 @@ from gaitsmith.gait.events import FootPath, Stance, check_order, stances
 from gaitsmith.gait.learn import SAMPLES, Learned, standing_feet, symmetrized
 from gaitsmith.gait.marker_body import FlatFoot, body_of_legs, flat_foot
 from gaitsmith.gait.marker_joints import MarkerLeg, MarkerWalker, walker_of
+from gaitsmith.gait.neutral import neutral_cycle
 from gaitsmith.geometry.curves import hermite, parabola_slopes, smoothstep
-from gaitsmith.geometry.rotations import IDENTITY, about, from_euler, inverse, multiply
+from gaitsmith.geometry.rotations import (
+    IDENTITY,
+    about,
+    from_euler,
+    inverse,
+    multiply,
+    rotate,
+    to_euler,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,8 +45,14 @@ if TYPE_CHECKING:
 _LONGEST, _SHORTEST = 0.6, 0.15
 #: Least double support after each heel strike, and between events of a foot, shares of the stride.
 _DOUBLE, _APART = 0.02, 0.004
+#: Flexion of the straightest knee in a stride, least; the walk `neutral` has no less.
+_STRAIGHTEST = float(np.radians(3.0))
+#: Leg lengths that a stride gets ahead at least, and radians that it turns at most.
+_LEAST, _TURNS = 0.15, float(np.radians(20.0))
 #: Frames by which a clip may miss the ends of its only stride.
 _SPARE = 1.5
+#: Seconds without ground that may be an error of the events.
+_FLIGHT = 0.03
 #: Columns of the hips and of each leg.
 _HIPS = ("x", "y", "z", "yaw", "lean", "list")
 _LEG = ("thigh", "knee", "aside", "pitch", "toes")
@@ -111,9 +126,11 @@ def learn_from_markers(
     spans = _spans(found, walker)
     feet = {side: flat_foot(leg, side, found, walker) for side, leg in walker.legs.items()}
     clip = _Clip(walker, found, feet)
-    spans = [s for s in spans if _ahead(clip, s)[2] > 0.3 * clip.leg.length]
+    spans = [s for s in spans if _straight(clip, s)]
     if not spans:
-        raise InfeasibleError("no stride of the markers leads forward")
+        raise InfeasibleError(
+            "no stride of the markers leads straight ahead; cut the clip to straight walking"
+        )
     usual = float(np.median([s.duration for s in spans]))
     span = min(spans, key=lambda s: _score(clip, s, usual))
     if not walker.flat:
@@ -147,6 +164,8 @@ def _spans(found: list[Stance], walker: MarkerWalker) -> list[_Span]:
     for side in walker.legs:
         own = [s for s in shown if s.side == side and s.cut != "start"]
         out += [_Span(side, a.heel_strike, b.heel_strike) for a, b in pairwise(own)]
+        if len(walker.legs) == 1:
+            _check_duty(own)
     if out and all(_known(found, side, event) for side in walker.legs for event in (0, 3)):
         return out
     known = "; ".join(
@@ -159,6 +178,17 @@ def _spans(found: list[Stance], walker: MarkerWalker) -> list[_Span]:
         f"toe-off between. Feet on the ground: {known or 'none found'}. Give a longer clip (1.6 "
         "strides), or the events if they are known (--events)"
     )
+
+
+def _check_duty(own: list[Stance]) -> None:
+    """Raise InfeasibleError if a foot that both feet are like bears less than half the time."""
+    for one, two in pairwise(own):
+        stride = two.heel_strike - one.heel_strike
+        if not one.cut and one.toe_off - one.heel_strike < 0.5 * stride - _FLIGHT:
+            raise InfeasibleError(
+                f"the foot bears for {one.toe_off - one.heel_strike:.2f} s of a stride of "
+                f"{stride:.2f} s: with less than half of it this is running, which is not learned"
+            )
 
 
 def _known(found: list[Stance], side: int, event: int) -> list[float]:
@@ -184,6 +214,19 @@ def _ahead(clip: _Clip, span: _Span) -> Float[np.ndarray, "3"]:
         heel = clip.walker.legs[span.side].heel
         first, last = _read(heel, np.array([span.begin, span.end]) * clip.walker.rate)
     return last - first
+
+
+def _straight(clip: _Clip, span: _Span) -> bool:
+    """Whether a stride gets ahead, and the hips face one way at its ends."""
+    if _ahead(clip, span)[2] < _LEAST * clip.leg.length:
+        return False
+    legs = clip.walker.legs
+    if len(legs) < 2 or clip.walker.flat:
+        return True
+    at = np.array([span.begin, span.end]) * clip.walker.rate
+    across = _read(legs[LEFT].hip - legs[RIGHT].hip, at)
+    first, last = np.arctan2(-across[:, 2], across[:, 0])
+    return bool(abs(np.angle(np.exp(1j * (last - first)))) < _TURNS)
 
 
 def _read(values: Float[np.ndarray, "F C"], at: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n C"]:
@@ -215,13 +258,13 @@ def _learned(
     body = body_of_legs(clip.walker, clip.feet, height, notes)
     length = float(_ahead(clip, span)[2])
     events = _phases(clip, span, notes)
-    hips, legs = _closed(clip, span, length, events, notes)
+    hips, legs = _closed(clip, span, length, events, body, notes)
     if len(clip.walker.legs) == 1:
         side = span.side
         notes.append(
             f"only the {SIDES[side]} leg was measured: the other does the same half a stride later"
         )
-    _hold_straight(legs, body, notes)
+    legs = _bent_forward(legs, clip, body, notes)
     cycle = Cycle(
         skeleton=skeleton_of(body),
         center=hips[:, :3],
@@ -286,7 +329,9 @@ def _phases(clip: _Clip, span: _Span, notes: list[str]) -> Float[np.ndarray, "2 
     return (strike[:, None] + since) % 1.0
 
 
-def _columns(clip: _Clip) -> Float[np.ndarray, "F C"]:
+def _columns(
+    clip: _Clip, span: _Span, events: Float[np.ndarray, "2 4"], body: Body
+) -> Float[np.ndarray, "F C"]:
     """Hips and measured legs, frame by frame: :data:`_HIPS`, then :data:`_LEG` of each leg."""
     walker = clip.walker
     legs = walker.legs
@@ -296,12 +341,31 @@ def _columns(clip: _Clip) -> Float[np.ndarray, "F C"]:
         across = legs[LEFT].hip - legs[RIGHT].hip
         turn[:, 0] = np.arctan2(-across[:, 2], across[:, 0])
         turn[:, 2] = np.arctan2(across[:, 1], np.hypot(across[:, 0], across[:, 2]))
+    elif len(legs) == 1:
+        share = (np.arange(count) / walker.rate - span.begin) / span.duration
+        turn = _usual_pelvis(share + events[span.side, 0])
     if walker.tilt is not None:
         turn[:, 1] = walker.tilt - walker.tilt.mean()
-    center = np.mean([g.hip for g in legs.values()], axis=0)
+    half = np.array([0.5 * body.hip_width, 0.0, 0.0])
+    pelvis = from_euler("yxz", turn)
+    away = {side: rotate(pelvis, SIDE_SIGN[side] * half) for side in legs}
+    if walker.flat:  # the markers are in one plane, the hip joints beside it
+        away = {side: v * [0.0, 1.0, 1.0] for side, v in away.items()}
+    center = np.mean([g.hip - away[side] for side, g in legs.items()], axis=0)
     return np.concatenate(
         [center, turn, *(_angles(leg, clip.feet[side]) for side, leg in legs.items())], axis=1
     )
+
+
+def _usual_pelvis(phase: Float[np.ndarray, "F"]) -> Float[np.ndarray, "F 3"]:
+    """Turn, lean and list of the pelvis of the built-in walk: where markers do not tell them.
+
+    Its hip joints rise and fall, and with them a marker that is on one of them.
+    """
+    _, turned = neutral_cycle().at(phase)
+    turn = to_euler("yxz", turned[:, 0])
+    turn[:, 1] = 0.0
+    return turn
 
 
 def _angles(leg: MarkerLeg, foot: FlatFoot) -> Float[np.ndarray, "F 5"]:
@@ -318,11 +382,16 @@ def _angles(leg: MarkerLeg, foot: FlatFoot) -> Float[np.ndarray, "F 5"]:
 
 
 def _closed(
-    clip: _Clip, span: _Span, length: float, events: Float[np.ndarray, "2 4"], notes: list[str]
+    clip: _Clip,
+    span: _Span,
+    length: float,
+    events: Float[np.ndarray, "2 4"],
+    body: Body,
+    notes: list[str],
 ) -> tuple[Float[np.ndarray, "K 6"], Float[np.ndarray, "2 K 5"]]:
     """Hips less their travel and both legs on the samples of a stride from the left strike."""
     rate, period = clip.walker.rate, span.duration
-    table = _columns(clip)
+    table = _columns(clip, span, events, body)
     slack = clip.last - period
     if slack < -_SPARE / rate:
         raise InfeasibleError(f"the clip of {clip.last:.2f} s is shorter than its stride")
@@ -361,17 +430,26 @@ def _closed(
     return hips, both
 
 
-def _hold_straight(legs: Float[np.ndarray, "2 K 5"], body: Body, notes: list[str]) -> None:
-    """Knees that bend backward on the skin held straight, hip to ankle as they were."""
-    thigh, knee = legs[..., 0], legs[..., 1]
-    over = np.maximum(-knee, 0.0)
-    if not over.any():
-        return
-    notes.append(
-        f"the knee markers bend backward by up to {np.degrees(over.max()):.1f} deg: held straight"
-    )
-    thigh += over * body.shin / body.leg_length
-    knee += over
+def _bent_forward(
+    legs: Float[np.ndarray, "2 K 5"], clip: _Clip, body: Body, notes: list[str]
+) -> Float[np.ndarray, "2 K 5"]:
+    """Knees put so far ahead that even the straightest is bent a little, hip to ankle as they were.
+
+    A marker beside the knee tells its axis to some 3 cm, which are 5 deg.
+    """
+    least = _STRAIGHTEST - legs[..., 1].min(axis=1)
+    out = np.array(legs)
+    for side in (LEFT, RIGHT):
+        if least[side] <= 0.0:
+            continue
+        out[side, :, 0] += least[side] * body.shin / body.leg_length
+        out[side, :, 1] += least[side]
+        if side in clip.walker.legs:
+            notes.append(
+                f"the {SIDES[side]} knee's marker is behind its axis: knee bent by "
+                f"{np.degrees(least[side]):.1f} deg more throughout"
+            )
+    return out
 
 
 def _posed(
