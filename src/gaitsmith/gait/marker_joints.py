@@ -33,7 +33,7 @@ _TROCHANTER = 0.092
 #: A belt slower than this is none, m/s; a walk that gets ahead at more than this share of the
 #: speed of its bearing feet is over ground.
 _BELT, _OVER_GROUND = 0.25, 0.4
-#: Share of frames in which the ball of the foot is low: less than any stance.
+#: Share of frames in which ball or heel of a foot is low: less than any stance.
 _LOW = 0.35
 
 
@@ -147,15 +147,23 @@ def _smooth(
     paths = {point: markers[name] for point, name in points.items()}
     if markers.rate < LEAST_RATE:
         return paths
-    # the fourth difference of white noise has 70 times its variance, a walk's is next to nothing
-    noise = [np.diff(path, n=4, axis=0)[:, np.ptp(path, axis=0) > 0.0] for path in paths.values()]
-    if float(np.median([np.sqrt((d**2).mean() / 70.0) for d in noise])) < NOISY:
+    noise = [_noise(path) for path in paths.values()]
+    if float(np.median(noise)) < NOISY:
         return paths
     notes.append(f"noisy paths: low-pass of {CUTOFF:g} Hz, no lag")
     return {
         point: butterworth_zero_lag(path, cutoff=CUTOFF, rate=markers.rate)
         for point, path in paths.items()
     }
+
+
+def _noise(path: Float[np.ndarray, "F 3"]) -> float:
+    """Standard deviation of the noise in a path's coordinates, meters.
+
+    The fourth difference of white noise has 70 times its variance; a walk's is next to nothing.
+    """
+    moving = path[:, np.ptp(path, axis=0) > 0.0]
+    return float(np.sqrt((np.diff(moving, n=4, axis=0) ** 2).mean() / 70.0)) if moving.size else 0.0
 
 
 def _ball(paths: dict[Point, Float[np.ndarray, "F 3"]], side: int) -> list[str]:
@@ -186,7 +194,11 @@ def _over_ground(
     for side in sides:
         ball = _mean(paths, side, _ball(paths, side))
         velocity = np.gradient(ball, axis=0)[:, [0, 2]] * rate
-        low.append(velocity[ball[:, 1] <= np.quantile(ball[:, 1], _LOW)])
+        bears, heel = (
+            path[:, 1] <= np.quantile(path[:, 1], _LOW) for path in (ball, paths[side, "heel"])
+        )
+        # a flat foot moves as the belt does; who walks on the toes has none
+        low.append(velocity[bears & heel if (bears & heel).sum() >= 5 else bears])
     belt = np.median(np.concatenate(low), axis=0)
     trunk = _mean(paths, sides[0], _trunk(paths, sides[0]))[:, [0, 2]]
     time = np.arange(len(trunk)) / rate

@@ -7,8 +7,6 @@ above stays at rest: it moves by rules. ``docs/reference/markers.md`` says what 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,12 +15,22 @@ from gaitsmith.body.rig import skeleton_of
 from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, SIDES
 from gaitsmith.errors import InfeasibleError
 from gaitsmith.gait.cycle import EVENTS, Cycle
-from gaitsmith.gait.events import FootPath, Stance, check_order, stances
 from gaitsmith.gait.learn import SAMPLES, Learned, standing_feet, symmetrized
 from gaitsmith.gait.marker_body import FlatFoot, body_of_legs, flat_foot
-from gaitsmith.gait.marker_joints import MarkerLeg, MarkerWalker, walker_of
+from gaitsmith.gait.marker_joints import MarkerLeg, walker_of
+from gaitsmith.gait.marker_strides import (
+    MarkerClip,
+    Span,
+    is_straight,
+    known,
+    read,
+    score,
+    spans_of,
+    stances_of,
+    way_of,
+)
 from gaitsmith.gait.neutral import neutral_cycle
-from gaitsmith.geometry.curves import hermite, parabola_slopes, smoothstep
+from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.rotations import (
     IDENTITY,
     about,
@@ -39,6 +47,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
+    from gaitsmith.gait.events import Stance
     from gaitsmith.motion.motion import Markers
 
 #: Shares of a stride: the longest blend, and the shortest worth one (else the gap is spread).
@@ -47,46 +56,13 @@ _LONGEST, _SHORTEST = 0.6, 0.15
 _DOUBLE, _APART = 0.02, 0.004
 #: Flexion of the straightest knee in a stride, least; the walk `neutral` has no less.
 _STRAIGHTEST = float(np.radians(3.0))
-#: Leg lengths that a stride gets ahead at least, and radians that it turns at most.
-_LEAST, _TURNS = 0.15, float(np.radians(20.0))
 #: Frames by which a clip may miss the ends of its only stride.
 _SPARE = 1.5
-#: Seconds without ground that may be an error of the events.
-_FLIGHT = 0.03
 #: Columns of the hips and of each leg.
 _HIPS = ("x", "y", "z", "yaw", "lean", "list")
 _LEG = ("thigh", "knee", "aside", "pitch", "toes")
 #: Of _HIPS: what a mirror reverses.
 _MIRROR = np.array([-1.0, 1.0, 1.0, -1.0, 1.0, -1.0])
-
-
-@dataclass(frozen=True)
-class _Span:
-    """A stride that could be taken, from one heel strike to the next of the same foot."""
-
-    side: int
-    begin: float
-    end: float
-
-    @property
-    def duration(self) -> float:
-        return self.end - self.begin
-
-
-@dataclass(eq=False)
-class _Clip:
-    walker: MarkerWalker
-    found: list[Stance]
-    feet: dict[int, FlatFoot]
-
-    @property
-    def last(self) -> float:
-        """Seconds of the last frame."""
-        return (len(self.leg.hip) - 1) / self.walker.rate
-
-    @property
-    def leg(self) -> MarkerLeg:
-        return next(iter(self.walker.legs.values()))
 
 
 def learn_from_markers(
@@ -122,133 +98,28 @@ def learn_from_markers(
     notes: list[str] = []
     unsaid = RIGHT if not events else min(events, key=lambda s: s.heel_strike).side
     walker = walker_of(markers, unsaid, notes)
-    found = _stances(walker, events)
-    spans = _spans(found, walker)
+    found = stances_of(walker, events)
+    spans = spans_of(found, walker)
     feet = {side: flat_foot(leg, side, found, walker) for side, leg in walker.legs.items()}
-    clip = _Clip(walker, found, feet)
-    spans = [s for s in spans if _straight(clip, s)]
+    clip = MarkerClip(walker, found, feet)
+    spans = [s for s in spans if is_straight(clip, s)]
     if not spans:
         raise InfeasibleError(
             "no stride of the markers leads straight ahead; cut the clip to straight walking"
         )
     usual = float(np.median([s.duration for s in spans]))
-    span = min(spans, key=lambda s: _score(clip, s, usual))
+    span = min(spans, key=lambda s: score(clip, s, usual))
     if not walker.flat:
-        way = _ahead(clip, span)
+        way = way_of(clip, span)
         walker = walker.turned(float(np.arctan2(way[0], way[2])))
         feet = {side: flat_foot(leg, side, found, walker) for side, leg in walker.legs.items()}
-        clip = _Clip(walker, found, feet)
+        clip = MarkerClip(walker, found, feet)
     return _learned(clip, span, height, symmetric, notes, source, license)
 
 
-def _stances(walker: MarkerWalker, events: Sequence[Stance] | None) -> list[Stance]:
-    legs = walker.legs
-    if events is None:
-        paths = {s: FootPath(g.ankle, g.heel, g.ball, g.tip) for s, g in legs.items()}
-        length = float(np.mean([g.length for g in legs.values()]))
-        return stances(paths, walker.rate, speed=walker.speed, leg_length=length)
-    found = sorted(events, key=lambda s: s.heel_strike)
-    if other := [s for s in found if s.side not in legs]:
-        raise InfeasibleError(
-            f"the events are of the {SIDES[other[0].side]} foot, whose markers are not here"
-        )
-    return found
-
-
-def _spans(found: list[Stance], walker: MarkerWalker) -> list[_Span]:
-    """Every stride of either foot of which all events are known."""
-    shown = [s for s in found if s.cut != "both"]
-    if len(walker.legs) == 2:
-        check_order(shown)
-    out: list[_Span] = []
-    for side in walker.legs:
-        own = [s for s in shown if s.side == side and s.cut != "start"]
-        out += [_Span(side, a.heel_strike, b.heel_strike) for a, b in pairwise(own)]
-        if len(walker.legs) == 1:
-            _check_duty(own)
-    if out and all(_known(found, side, event) for side in walker.legs for event in (0, 3)):
-        return out
-    known = "; ".join(
-        f"{SIDES[s.side]} {s.heel_strike:.2f}-{s.toe_off:.2f} s"
-        + (f" (cut at {s.cut})" if s.cut else "")
-        for s in found
-    )
-    raise InfeasibleError(
-        "the markers hold no stride: from one heel strike to the next of the same foot, with every "
-        f"toe-off between. Feet on the ground: {known or 'none found'}. Give a longer clip (1.6 "
-        "strides), or the events if they are known (--events)"
-    )
-
-
-def _check_duty(own: list[Stance]) -> None:
-    """Raise InfeasibleError if a foot that both feet are like bears less than half the time."""
-    for one, two in pairwise(own):
-        stride = two.heel_strike - one.heel_strike
-        if not one.cut and one.toe_off - one.heel_strike < 0.5 * stride - _FLIGHT:
-            raise InfeasibleError(
-                f"the foot bears for {one.toe_off - one.heel_strike:.2f} s of a stride of "
-                f"{stride:.2f} s: with less than half of it this is running, which is not learned"
-            )
-
-
-def _known(found: list[Stance], side: int, event: int) -> list[float]:
-    """Times of an event of a foot, of those stances that show it."""
-    hidden = ("start", "both") if event < 2 else ("end", "both")
-    return [s.times[event] for s in found if s.side == side and s.cut not in hidden]
-
-
-def _place(clip: _Clip, side: int, strike: float) -> Float[np.ndarray, "3"] | None:
-    """Where the ball of the foot stands after it struck, meters; None if the clip ends before."""
-    stance = next(s for s in clip.found if s.side == side and s.heel_strike == strike)
-    rate = clip.walker.rate
-    a, b = stance.foot_flat, min(stance.heel_off, clip.last)
-    if b - a < 0.1:
-        return None
-    return clip.walker.legs[side].ball[round(a * rate) : round(b * rate) + 1].mean(0)
-
-
-def _ahead(clip: _Clip, span: _Span) -> Float[np.ndarray, "3"]:
-    """How far the foot gets in a stride: where it stands, else where its heel strikes."""
-    first, last = (_place(clip, span.side, t) for t in (span.begin, span.end))
-    if first is None or last is None:
-        heel = clip.walker.legs[span.side].heel
-        first, last = _read(heel, np.array([span.begin, span.end]) * clip.walker.rate)
-    return last - first
-
-
-def _straight(clip: _Clip, span: _Span) -> bool:
-    """Whether a stride gets ahead, and the hips face one way at its ends."""
-    if _ahead(clip, span)[2] < _LEAST * clip.leg.length:
-        return False
-    legs = clip.walker.legs
-    if len(legs) < 2 or clip.walker.flat:
-        return True
-    at = np.array([span.begin, span.end]) * clip.walker.rate
-    across = _read(legs[LEFT].hip - legs[RIGHT].hip, at)
-    first, last = np.arctan2(-across[:, 2], across[:, 0])
-    return bool(abs(np.angle(np.exp(1j * (last - first)))) < _TURNS)
-
-
-def _read(values: Float[np.ndarray, "F C"], at: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n C"]:
-    frames = np.arange(len(values), dtype=np.float64)
-    return hermite(frames, values, parabola_slopes(frames, values), at)
-
-
-def _score(clip: _Clip, span: _Span, usual: float) -> float:
-    """How ill a stride closes and how unusual it is."""
-    ends = np.array([span.begin, span.end]) * clip.walker.rate
-    gap = 0.0
-    for leg in clip.walker.legs.values():
-        shape = np.concatenate([leg.knee - leg.hip, leg.ankle - leg.hip], axis=-1)
-        one, two = _read(shape, ends)
-        gap = max(gap, float(np.abs(two - one).max()) / leg.length)
-    early = max(0.0, _LONGEST - (clip.last - span.end) / span.duration)
-    return gap + 4.0 * abs(span.duration / usual - 1.0) + 0.02 * early
-
-
 def _learned(
-    clip: _Clip,
-    span: _Span,
+    clip: MarkerClip,
+    span: Span,
     height: float | None,
     symmetric: bool,
     notes: list[str],
@@ -256,7 +127,7 @@ def _learned(
     license: str,
 ) -> Learned:
     body = body_of_legs(clip.walker, clip.feet, height, notes)
-    length = float(_ahead(clip, span)[2])
+    length = float(way_of(clip, span)[2])
     events = _phases(clip, span, notes)
     hips, legs = _closed(clip, span, length, events, body, notes)
     if len(clip.walker.legs) == 1:
@@ -294,13 +165,13 @@ def _learned(
     )
 
 
-def _phases(clip: _Clip, span: _Span, notes: list[str]) -> Float[np.ndarray, "2 4"]:
+def _phases(clip: MarkerClip, span: Span, notes: list[str]) -> Float[np.ndarray, "2 4"]:
     """Events of [left, right] as stride phases, the left heel strike at 0."""
     out = np.empty((2, 4))
     middle = 0.5 * (span.begin + span.end)
     for side in clip.walker.legs:
         for event in range(len(EVENTS)):
-            times = _known(clip.found, side, event)
+            times = known(clip.found, side, event)
             if event in (1, 2) and not times:
                 raise InfeasibleError(
                     f"the markers do not show the {SIDES[side]} foot flat on the ground in a stance"
@@ -330,7 +201,7 @@ def _phases(clip: _Clip, span: _Span, notes: list[str]) -> Float[np.ndarray, "2 
 
 
 def _columns(
-    clip: _Clip, span: _Span, events: Float[np.ndarray, "2 4"], body: Body
+    clip: MarkerClip, span: Span, events: Float[np.ndarray, "2 4"], body: Body
 ) -> Float[np.ndarray, "F C"]:
     """Hips and measured legs, frame by frame: :data:`_HIPS`, then :data:`_LEG` of each leg."""
     walker = clip.walker
@@ -382,8 +253,8 @@ def _angles(leg: MarkerLeg, foot: FlatFoot) -> Float[np.ndarray, "F 5"]:
 
 
 def _closed(
-    clip: _Clip,
-    span: _Span,
+    clip: MarkerClip,
+    span: Span,
     length: float,
     events: Float[np.ndarray, "2 4"],
     body: Body,
@@ -406,7 +277,7 @@ def _closed(
     def at(share: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n C"]:
         """Columns at shares of the stride from ``begin``, less their travel."""
         times = np.clip(begin + share * period, 0.0, clip.last)
-        return _read(table, times * rate) - share[:, None] * travel
+        return read(table, times * rate) - share[:, None] * travel
 
     share = (left - begin) / period + phase
     share = share % 1.0
@@ -431,7 +302,7 @@ def _closed(
 
 
 def _bent_forward(
-    legs: Float[np.ndarray, "2 K 5"], clip: _Clip, body: Body, notes: list[str]
+    legs: Float[np.ndarray, "2 K 5"], clip: MarkerClip, body: Body, notes: list[str]
 ) -> Float[np.ndarray, "2 K 5"]:
     """Knees put so far ahead that even the straightest is bent a little, hip to ankle as they were.
 
@@ -453,7 +324,7 @@ def _bent_forward(
 
 
 def _posed(
-    body: Body, hips: Float[np.ndarray, "K 6"], legs: Float[np.ndarray, "2 K 5"], clip: _Clip
+    body: Body, hips: Float[np.ndarray, "K 6"], legs: Float[np.ndarray, "2 K 5"], clip: MarkerClip
 ) -> Float[np.ndarray, "K J 4"]:
     """Local rotations of the body's joints; those above the hips stay at rest."""
     skeleton = skeleton_of(body)
