@@ -32,6 +32,8 @@ _FLAT = (0.05, 0.6)
 _ANKLES, _USUAL_ANKLE = (0.055, 0.16), 0.0795
 #: Shares of the usual heel that the landing may tell.
 _HEELS = (0.4, 1.3)
+#: Range of thigh over shin that is believed.
+_KNEES = (0.85, 1.18)
 #: Range of hip widths over stature that are believed.
 _HIP_WIDTHS = (0.06, 0.16)
 #: Step width over stature where the markers are of one plane.
@@ -142,6 +144,12 @@ def body_of_legs(
             f"legs of {thigh + shin:.3f} m (hip to ankle) do not go with a height of "
             f"{usual.height:.2f} m"
         )
+    if not _KNEES[0] <= thigh / shin <= _KNEES[1]:
+        notes.append(
+            f"thigh {thigh:.3f} m and shin {shin:.3f} m: the knee's marker is far from its axis along "
+            "the leg; their sum is kept, split as usual"
+        )
+        thigh, shin = ((thigh + shin) * b / usual.leg_length for b in (usual.thigh, usual.shin))
     foot = _foot(feet, usual, thigh + shin, notes)
     lengths = {"thigh": thigh, "shin": shin, "hip_width": _hip_width(walker, usual, notes)}
     above = foot.ankle_height + thigh + shin
