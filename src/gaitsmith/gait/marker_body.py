@@ -146,8 +146,8 @@ def body_of_legs(
         )
     if not _KNEES[0] <= thigh / shin <= _KNEES[1]:
         notes.append(
-            f"thigh {thigh:.3f} m and shin {shin:.3f} m: the knee's marker is far from its axis along "
-            "the leg; their sum is kept, split as usual"
+            f"thigh {thigh:.3f} m and shin {shin:.3f} m: the knee's marker is far from its axis "
+            "along the leg; their sum is kept, split as usual"
         )
         thigh, shin = ((thigh + shin) * b / usual.leg_length for b in (usual.thigh, usual.shin))
     foot = _foot(feet, usual, thigh + shin, notes)
