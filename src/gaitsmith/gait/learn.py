@@ -202,6 +202,7 @@ def _with_heel(
         slopes += slope.tolist()
         rises += (heel[:, 1] - floor).tolist()
     slope, rise = np.array(slopes), np.array(rises)
+    slope = np.maximum(slope, 0.0)  # whoever lands on the toes tells nothing of the heel
     weight = float((slope**2).sum())
     if weight < 0.05:
         return body
