@@ -175,7 +175,7 @@ class _Side:
                 off_pitch=off_pitch,
                 off_meta=off_meta,
                 # sole and toes keep step with each other at every step length
-                gains=(*_GAINS, _GAINS[2] * off_meta / off_pitch),
+                gains=(*_GAINS, _GAINS[2] * min(off_meta / off_pitch, 1.0)),
                 kappa=float(1.0 - hip.values[-1, 0] / self.length),
                 hip=(float(lead), float(lift)),
             ),
