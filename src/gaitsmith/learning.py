@@ -203,7 +203,7 @@ def read_events(path: str | Path) -> list[Stance]:
                 f"flat, heel off, toe-off; got {','.join(row)}",
                 line=line,
             )
-        out.append(Stance(SIDES.index(side), *times))
+        out.append(Stance(SIDES.index(side), times[0], times[1], times[2], times[3]))
     if not out:
         raise FileFormatError(path, "no stances")
     return out

@@ -40,6 +40,8 @@ _LOADED = 0.012
 _FLIGHT = 0.03
 #: Seconds: shorter gaps in a stance are filled, shorter stances are none.
 _GAP, _SHORTEST = 0.08, 0.12
+#: A foot that bears again within this many seconds and meters has not stepped.
+_TWITCH, _SAME_PLACE = 0.3, 0.06
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,12 +56,12 @@ class FootPath:
     def resampled(self, at: Float[np.ndarray, "n"]) -> FootPath:
         """The same paths at frames ``at``, fractions of frames too, by the cubic."""
         frames = np.arange(len(self.ankle), dtype=np.float64)
-        return FootPath(
-            *(
-                None if p is None else hermite(frames, p, parabola_slopes(frames, p), at)
-                for p in (self.ankle, self.heel, self.ball, self.tip)
-            )
-        )
+
+        def read(path: Float[np.ndarray, "F 3"]) -> Float[np.ndarray, "n 3"]:
+            return hermite(frames, path, parabola_slopes(frames, path), at)
+
+        tip = None if self.tip is None else read(self.tip)
+        return FootPath(read(self.ankle), read(self.heel), read(self.ball), tip)
 
 
 @dataclass(frozen=True)
@@ -138,7 +140,7 @@ def _of_foot(side: int, foot: FootPath, rate: float, speed: float, scale: float)
     foot = foot.resampled(np.arange((count - 1) * factor + 1) / factor)
     slow = np.minimum(_speed(foot.ankle, fine), _speed(foot.ball, fine)) / speed
     out: list[Stance] = []
-    for first, last in _blocks(slow, fine):
+    for first, last in _stepped(_blocks(slow, fine), foot.ball[:, [0, 2]], fine, scale):
         frames = _events_of_block(foot, first, last, fine, speed, scale)
         times = [float(f) / fine for f in frames]
         if first > 0:
@@ -166,6 +168,21 @@ def _blocks(slow: Float[np.ndarray, "n"], rate: float) -> list[tuple[int, int]]:
         else:
             joined.append((a, b))
     return [(a, b) for a, b in joined if b - a >= _SHORTEST * rate or a == 0 or b == len(slow)]
+
+
+def _stepped(
+    blocks: list[tuple[int, int]], ball: Float[np.ndarray, "n 2"], rate: float, scale: float
+) -> list[tuple[int, int]]:
+    """Blocks joined where the foot stands on where it stood: that was noise, no step."""
+    out: list[tuple[int, int]] = []
+    for first, last in blocks:
+        if out and first - out[-1][1] < _TWITCH * rate:
+            there, here = (np.median(ball[a:b], axis=0) for a, b in (out[-1], (first, last)))
+            if np.linalg.norm(here - there) < _SAME_PLACE * scale:
+                out[-1] = (out[-1][0], last)
+                continue
+        out.append((first, last))
+    return out
 
 
 def _events_of_block(

@@ -201,6 +201,7 @@ def _with_heel(
         slopes += slope.tolist()
         rises += (heel[:, 1] - floor).tolist()
     slope, rise = np.array(slopes), np.array(rises)
+    slope = np.maximum(slope, 0.0)  # whoever lands on the toes tells nothing of the heel
     weight = float((slope**2).sum())
     if weight < 0.05:
         return body
@@ -237,6 +238,12 @@ def over_ground(motion: Motion, notes: list[str]) -> Motion:
     net = np.linalg.norm(way[[0, 2]]) / max(motion.duration, 1e-9)
     if np.hypot(*belt) < 0.25 or net > 0.4 * np.hypot(*belt):
         return motion
+    # the mean speed of whatever point is lowest: it bears
+    points = sole_positions(motion.skeleton, positions, world).reshape(len(motion), 6, 3)
+    lowest = points[..., 1].argmin(axis=1)[:-1, None, None]
+    passing = np.take_along_axis(np.diff(points, axis=0), lowest, axis=1)[:, 0] * motion.fps
+    along = passing[:, [0, 2]] @ belt / np.hypot(*belt)
+    belt = passing[along > 0.4 * np.hypot(*belt)][:, [0, 2]].mean(axis=0)
     notes.append(f"walks in place: carried over the ground at {np.hypot(*belt):.2f} m/s")
     carried = np.array(motion.root_position)
     carried[:, [0, 2]] -= motion.times[:, None] * belt
@@ -282,7 +289,7 @@ def _straight(clip: _Clip, spans: list[_Span], notes: list[str]) -> list[_Span]:
         if length < _SHORTEST * clip.body.leg_length:
             why.append(f"a stride of {length:.2f} m gets nowhere")
         elif aside > 2.0:
-            why.append("it walks backward")
+            why.append("it walks backward (or left and right are exchanged in its joints' names)")
         elif aside > 0.7:
             why.append("it walks sideways")
         elif abs(turn) > _TURNS:

@@ -11,9 +11,9 @@ from gaitsmith.body.body import Body, Foot
 from gaitsmith.body.proportions import FOOT_SHARES, SHORTEST, TALLEST, body_from_height
 from gaitsmith.body.rig import skeleton_of
 from gaitsmith.conventions import SIDES, UP
-from gaitsmith.errors import InfeasibleError
+from gaitsmith.errors import InfeasibleError, InvalidInputError
 from gaitsmith.gait.rig_frames import Rig, bone_frames, still_frames
-from gaitsmith.geometry.rotations import IDENTITY, inverse, multiply, sign_continuous
+from gaitsmith.geometry.rotations import IDENTITY, inverse, multiply, rotate, sign_continuous
 from gaitsmith.motion.motion import Motion
 from gaitsmith.motion.roles import humanoid_roles
 
@@ -67,8 +67,11 @@ def person_of(clip: Motion, *, name: str = "clip") -> Person:
             "(--unit, unit=)"
         )
     frames = bone_frames(rig)
-    body, floor = _body_of(rig, height, name)
-    return Person(body, _moved(rig, frames, body, floor), tuple(roles))
+    try:
+        body, floor = _body_of(rig, frames, height, name)
+    except InvalidInputError as error:
+        raise InfeasibleError(f"the rig in the clip is no person's: {error}") from None
+    return Person(body, _moved(rig, frames, body, floor), tuple(rig.joints))
 
 
 def _length(rig: Rig, first: str, second: str) -> float:
@@ -83,12 +86,14 @@ def _both(rig: Rig, first: str, second: str, usual: float) -> float:
     return float(np.mean([_length(rig, f"{s}{first}", f"{s}{second}") for s in there]))
 
 
-def _body_of(rig: Rig, height: float, name: str) -> tuple[Body, float]:
+def _body_of(
+    rig: Rig, frames: dict[str, Float[np.ndarray, "4"]], height: float, name: str
+) -> tuple[Body, float]:
     """The body, and the height of the floor under its standing feet in the clip."""
     usual = body_from_height(height)
     thigh = _both(rig, "UpperLeg", "LowerLeg", usual.thigh)
     shin = _both(rig, "LowerLeg", "Foot", usual.shin)
-    foot, floor = _foot_of(rig, usual)
+    foot, floor = _foot_of(rig, frames, usual)
     lengths: dict[str, float] = {
         "thigh": thigh,
         "shin": shin,
@@ -97,9 +102,8 @@ def _body_of(rig: Rig, height: float, name: str) -> tuple[Body, float]:
         "forearm": _both(rig, "LowerArm", "Hand", usual.forearm),
     }
     lengths |= _trunk_of(rig, usual)
-    stacked = foot.ankle_height + sum(
-        lengths.get(k, getattr(usual, k)) for k in ("thigh", "shin", "trunk", "neck", "head")
-    )
+    above = {k: getattr(usual, k) for k in ("thigh", "shin", "trunk", "neck", "head")}
+    stacked = foot.ankle_height + sum(float(lengths.get(k, own)) for k, own in above.items())
     return replace(usual, name=name, height=stacked, foot=foot, **lengths), floor
 
 
@@ -128,31 +132,41 @@ def _trunk_of(rig: Rig, usual: Body) -> dict[str, float]:
     }
 
 
-def _foot_of(rig: Rig, usual: Body) -> tuple[Foot, float]:
-    """The foot triangle from feet that stand still, and the floor they stand on."""
+def _foot_of(
+    rig: Rig, frames: dict[str, Float[np.ndarray, "4"]], usual: Body
+) -> tuple[Foot, float]:
+    """The foot triangle from feet that stand still, and the floor they stand on.
+
+    The toes tell the floor, the sole's frame how high the ankle is above them when it is level:
+    some people never set their heels down.
+    """
     leg = rig.scale
     ankles, reaches, tips = list[float](), list[float](), list[float]()
     for side in SIDES:
         still = still_frames(rig, side)
         ankle = rig.at(f"{side}Foot")[still]
-        ankles.append(float(np.median(ankle[:, 1])))
+        low = float(np.median(ankle[:, 1]))
         if f"{side}Toes" in rig.joints:
-            way = (rig.at(f"{side}Toes")[still] - ankle)[:, [0, 2]]
-            reaches.append(float(np.linalg.norm(way, axis=-1).mean()))
+            toes = rig.at(f"{side}Toes")
+            sole = multiply(rig.turn(f"{side}Foot"), frames[f"{side}Foot"])
+            reach = rotate(inverse(sole), toes - rig.at(f"{side}Foot")).mean(0)
+            reaches.append(float(np.hypot(reach[0], reach[2])))
+            low = float(np.median(toes[still, 1]) - reach[1])
             ends = rig.motion.skeleton.ends
             if ends is not None:
                 tips.append(float(np.linalg.norm(ends[rig.joints[f"{side}Toes"]])))
+        ankles.append(low)
     height = float(np.mean(ankles))
     floor = 0.0
     if not _ANKLES[0] * leg <= height <= _ANKLES[1] * leg:
         floor, height = height - _USUAL_ANKLE * leg, _USUAL_ANKLE * leg
-    heel, ball, toes = FOOT_SHARES
+    heel, ball, tips_share = FOOT_SHARES
     front = float(np.mean(reaches)) if reaches else usual.foot.ball
     front = min(max(front, 0.6 * usual.foot.ball), 1.5 * usual.foot.ball)
     tip = float(np.mean(tips)) if tips else 0.0
     if not 0.3 * front <= tip <= front:
-        tip = front * toes / ball
-    return Foot(height, heel / (ball + toes) * (front + tip), front, tip), floor
+        tip = front * tips_share / ball
+    return Foot(height, heel / (ball + tips_share) * (front + tip), front, tip), floor
 
 
 def _moved(rig: Rig, frames: dict[str, Float[np.ndarray, "4"]], body: Body, floor: float) -> Motion:

@@ -39,7 +39,7 @@ _SNAP, _SNAP_HIPS = 0.76, 0.974
 #: Share of frames, the stillest ones, in which a foot is looked at for its sole.
 _STILLEST = 0.12
 #: Radians by which a still foot may differ from the rest pose's before the rest is believed.
-_TIPTOE = 0.45
+_TIPTOE = 0.25
 _TRUNK = ("spine", "chest", "upperChest", "neck", "head")
 
 Vector = "Float[np.ndarray, '3']"
@@ -59,6 +59,13 @@ class Rig:
 
     motion: Motion
     joints: dict[str, int]
+
+    def __post_init__(self) -> None:
+        """Joints that lie on their parents are none."""
+        for side in SIDES:
+            foot, toes = f"{side}Foot", f"{side}Toes"
+            if toes in self.joints and _length(self.at(toes) - self.at(foot)) < 0.05 * self.scale:
+                self.joints = {r: j for r, j in self.joints.items() if r != toes}
 
     @cached_property
     def world(self) -> tuple[Float[np.ndarray, "F J 3"], Float[np.ndarray, "F J 4"]]:
@@ -171,9 +178,17 @@ def _snapped(q: Float[np.ndarray, "4"], near: float) -> Float[np.ndarray, "4"]:
 
 
 def _trunk_frames(rig: Rig) -> dict[str, Float[np.ndarray, "4"]]:
-    """Hips, spine, neck and head: the rest pose, else upright and ahead on the average."""
+    """Hips, spine, neck and head: the rest pose, else ahead on the average.
+
+    The spine then goes up the line from hips to neck, which keeps who leans leaning; hips and
+    head are upright on the average.
+    """
     out: dict[str, Float[np.ndarray, "4"]] = {}
-    up = np.broadcast_to(UP, rig.left.shape)
+    plumb = np.broadcast_to(UP, rig.left.shape)
+    top = next((r for r in ("neck", "head") if r in rig.joints), None)
+    line = plumb
+    if top is not None:
+        line = _unit(rig.at(top) - 0.5 * (rig.at("leftUpperLeg") + rig.at("rightUpperLeg")))
     for role in ("hips", *_TRUNK):
         if role not in rig.joints:
             continue
@@ -182,7 +197,9 @@ def _trunk_frames(rig: Rig) -> dict[str, Float[np.ndarray, "4"]]:
             continue
         across = rig.local(role, rig.left if role == "hips" else np.cross(UP, rig.facing))
         near = _SNAP_HIPS if role == "hips" else _SNAP
-        out[role] = _snapped(frame((0, across), (1, rig.local(role, up))), near)
+        up = plumb if role in ("hips", "head") else line
+        upright = frame((0, across), (1, rig.local(role, up)))
+        out[role] = _snapped(upright, near)
     if rig.rest_turn is None:  # the hips' axis is told by the hip joints, exactly
         left = rig.local("hips", rig.left)
         out["hips"] = frame((0, left), (1, rotate(out["hips"], UP)))

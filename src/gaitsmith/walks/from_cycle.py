@@ -144,19 +144,26 @@ class _Side:
         foot1 = self.sequence(p.pitch[:, s], 0.0, flat)
         foot2 = self.sequence(p.pitch[:, s], flat, end)
         meta = self.sequence(p.meta[:, s], meta_off, end)
+        landed, off_pitch = float(foot1.values[0, 0]), -float(foot2.values[-1, 0])
         level = abs(float(foot2.values[0, 0])) < 2.0 * SMALLEST_ANGLE
         if level:
             falling = np.minimum(foot2.values, 0.0)
             foot2 = foot2.with_values(np.where(foot2.times[:, None] <= heel_off, 0.0, falling))
-            landing = np.maximum(foot1.values, 0.0)
-            foot1 = foot1.with_values(landing - landing[-1] * foot1.unit[:, None])
+            landing = foot1.values - foot1.values[-1] * foot1.unit[:, None]
+            onto = np.maximum if _apart_from_0(landed) > 0.0 else np.minimum
+            foot1 = foot1.with_values(onto(landing, 0.0))
+        # generalization divides by the ends
+        off_pitch = max(off_pitch, 2.0 * SMALLEST_ANGLE)
+        rising = np.clip((foot2.times - heel_off) / (end - heel_off), 0.0, 1.0)
+        foot1 = _ending(foot1, _apart_from_0(landed), 1.0 - foot1.unit)
+        foot2 = _ending(foot2, -off_pitch, rising)
         meta = meta.with_values(np.maximum(meta.values - meta.values[0], 0.0))
+        off_meta = max(float(meta.values[-1, 0]), 2.0 * SMALLEST_ANGLE)
+        meta = _ending(meta, off_meta, meta.unit)
         strike = self.read(p.ankle[:, o], np.array([self.span]), travels=True)[0]
         joint = np.array([self._at_strike(p.hip[:, o, i]) for i in (0, 1)])
         reach = float(np.hypot(*(strike - hip.values[-1] - joint)))
         lead, lift = joint / self.body.leg_length
-        off_pitch = max(-float(foot2.values[-1, 0]), 2.0 * SMALLEST_ANGLE)
-        off_meta = max(float(meta.values[-1, 0]), 2.0 * SMALLEST_ANGLE)
         return WalkData(
             body=self.body,
             previous_length=self.previous,
@@ -168,7 +175,7 @@ class _Side:
                 off_pitch=off_pitch,
                 off_meta=off_meta,
                 # sole and toes keep step with each other at every step length
-                gains=(*_GAINS, _GAINS[2] * off_meta / off_pitch),
+                gains=(*_GAINS, _GAINS[2] * min(off_meta / off_pitch, 1.0)),
                 kappa=float(1.0 - hip.values[-1, 0] / self.length),
                 hip=(float(lead), float(lift)),
             ),
@@ -192,6 +199,12 @@ class _Side:
         thigh, shin = self.body.thigh, self.body.shin
         cosine = (thigh**2 + shin**2 - reach**2) / (2.0 * thigh * shin)
         return min(float(np.arccos(np.clip(cosine, -1.0, 1.0))), _STRAIGHTEST)
+
+
+def _ending(sequence: TimedSequence, end: float, u: Float[np.ndarray, "T"]) -> TimedSequence:
+    """``sequence`` raised along ``u`` so that it is ``end`` where ``u`` is 1."""
+    now = float(sequence.values[int(u.argmax()), 0])
+    return sequence.with_values(sequence.values + (end - now) * u[:, None])
 
 
 def _apart_from_0(angle: float) -> float:

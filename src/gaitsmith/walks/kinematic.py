@@ -37,6 +37,8 @@ STANDING_REACH = 0.9982
 SAMPLES = 36
 #: The pose at the first toe-off is that of a walk with steps this part as long.
 START_SHARE = 0.6
+#: Part of a step in which who walks on the toes sets the heel down to stand, and raises it.
+SET_DOWN = 0.5
 #: Shares of the swing after which the toes are straight again.
 TOES_STRAIGHT = 0.35
 
@@ -170,6 +172,7 @@ class KinematicWalk:
             hip=walk.hip.with_values(hip),
             ankle=walk.ankle.with_values(ankle),
             foot1=walk.foot1.with_values(np.zeros_like(walk.foot1.values)),
+            foot2=walk.foot2.with_values(walk.foot2.values - _held(walk)),
             foot3=walk.foot3.with_values(turn),
         )
         return _sagittal(
@@ -199,11 +202,17 @@ class KinematicWalk:
         walk = walk.with_(
             hip=walk.hip.with_values(hip),
             ankle=walk.ankle.with_values(ankle),
-            foot2=walk.foot2.with_values(np.zeros_like(walk.foot2.values)),
+            foot2=walk.foot2.with_values(_held(walk)),
             foot3=walk.foot3.with_values(turn),
             meta=walk.meta.with_values(np.zeros_like(walk.meta.values)),
         )
         return _sagittal(walk, *rear, previous=previous, heel_off=1.0, meta_off=1.0)
+
+
+def _held(walk: WalkData) -> Float[np.ndarray, "T 1"]:
+    """The pitch at which a foot that is never level stands, let down over half a step."""
+    u = (walk.foot2.times - walk.flat) / SET_DOWN
+    return walk.foot2.values[0, 0] * (1.0 - smoothstep(np.minimum(u, 1.0)))[:, None]
 
 
 def _of_half_a_stride(walk: WalkData) -> tuple[float, float]:

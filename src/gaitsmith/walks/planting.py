@@ -32,6 +32,8 @@ LEVEL, LYING = float(np.radians(2.0)), float(np.radians(4.0))
 #: The toes of a living foot begin to slide before the force is gone, those of a planted one leave
 #: then: 40 ms earlier in four of five toe-offs with force plates, half of that here (stride).
 SLIDES = 0.02
+#: Least double support of planted feet after each heel strike, share of the stride.
+DOUBLE = 0.02
 #: Least knee flexion that a bearing leg is asked to show, radians.
 _STRAIGHTEST = 0.105
 #: Part of a stride over which a heel begins to rise.
@@ -110,7 +112,7 @@ def plant(cycle: Cycle, body: Body, *, place: Float[np.ndarray, "2"], width: flo
     """
     seen = _seen(cycle, place[0])
     place = np.array([0.0, place[1] - place[0]])
-    marks = np.stack([_marks(seen, cycle.events[side], side) for side in (0, 1)])
+    marks = np.stack([_marks(seen, cycle.events, side) for side in (0, 1)])
     pitch = np.stack([_pitch(seen, marks[s], s) for s in (0, 1)], axis=-1)
     meta = np.stack([_meta(seen, marks[s], s) for s in (0, 1)], axis=-1)
     fit = _Fit(seen, body, cycle.stride_length, place, marks, width, pitch, meta)
@@ -158,9 +160,11 @@ def _stance(seen: _Measured, side: int, last: float) -> tuple[np.ndarray, np.nda
     return order, seen.own[order, side] <= last
 
 
-def _marks(seen: _Measured, events: Float[np.ndarray, "4"], side: int) -> Float[np.ndarray, "5"]:
+def _marks(seen: _Measured, both: Float[np.ndarray, "2 4"], side: int) -> Float[np.ndarray, "5"]:
     """Own phases at which the sole is level, rises, stands on its tip and leaves."""
-    toe_off = float((events[3] - events[0]) % 1.0) - SLIDES
+    events = both[side]
+    landing = float((both[1 - side, 0] - events[0]) % 1.0)
+    toe_off = max(float((events[3] - events[0]) % 1.0) - SLIDES, landing + DOUBLE)
     order, stands = _stance(seen, side, toe_off)
     own, pitch = seen.own[order, side][stands], seen.pitch[order, side][stands]
     inside = (own > 0.1 * toe_off) & (own < 0.85 * toe_off)
@@ -197,8 +201,11 @@ def _pitch(seen: _Measured, marks: Float[np.ndarray, "5"], side: int) -> Float[n
     else:
         at_flat = np.interp(flat, own, value)
         landing = own < flat
-        first = np.maximum(value[landing] - at_flat * own[landing] / flat, 0.0)
-        value[landing] = np.minimum.accumulate(first) if first.size else first
+        first = value[landing] - at_flat * own[landing] / flat
+        if first.size and first[0] < -LEVEL:  # the toes land first
+            value[landing] = np.maximum.accumulate(np.minimum(first, 0.0))
+        else:
+            value[landing] = np.minimum.accumulate(np.maximum(first, 0.0))
         value[(own >= flat) & (own <= heel_off)] = 0.0
         rising = (own > heel_off) & stands
         rise = np.minimum(value[rising], 0.0) * smoothstep((own[rising] - heel_off) / _ONSET)
