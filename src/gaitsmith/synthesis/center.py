@@ -144,12 +144,14 @@ def anchored(
     turn0 = begun[:, 0] * (bent.direction[:, 1] - tracked.heading[first])
     turn1 = gone[:, 0] * (bent.direction[:, 2] - tracked.heading[last])
     ease = smoothstep(flat.phase)
-    held_place = tracked.place + (1.0 - ease)[:, None] * start[i] + ease[:, None] * end[i]
+    held_place = tracked_place + (1.0 - ease)[:, None] * start[i] + ease[:, None] * end[i]
     held_heading = tracked.heading + (1.0 - ease) * turn0[i] + ease * turn1[i]
+    held_left = np.stack([np.cos(held_heading), -np.sin(held_heading)], axis=-1)
+    held_place = held_place + (offset * tracked.lean)[:, None] * held_left
     return CenterPath(
         np.where(keep[:, None], held_place, place),
         np.where(keep, held_heading, heading),
-        np.where(keep[:, None], tracked.left, left),
+        np.where(keep[:, None], held_left, left),
         tracked.lean,
         tracked.gaze,
         tracked.resting,
