@@ -54,7 +54,7 @@ FASTER = 0.6
 #: mean is less than this from straight down.
 HANG, HANGING = 0.5, float(np.radians(40.0))
 #: Share of the mean elbow flexion that is gone in standing.
-STRAIGHTER = 0.35
+STRAIGHTER = 0.5
 _ARM = ("Shoulder", "UpperArm", "LowerArm", "Hand")
 
 
