@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.gait.neutral import neutral_cycle, subject
-from gaitsmith.gait.posture import with_easy_shoulders_and_hands, with_pelvis_tilt
+from gaitsmith.gait.posture import (
+    with_easy_shoulders_and_hands,
+    with_head_that_follows,
+    with_pelvis_tilt,
+)
 from gaitsmith.synthesis.cycle_overlay import CycleOverlay
 from gaitsmith.synthesis.upper_body import Manner, RuleOverlay
 from gaitsmith.walks import KinematicWalk, winter
@@ -70,7 +74,8 @@ class Gait:
 def neutral(_: Manner | None = None) -> Gait:
     """A measured man's whole body, made symmetric, his arms relaxed [Rajagopal 2016]."""
     cycle, body = neutral_cycle(), subject()
-    cycle = with_easy_shoulders_and_hands(with_pelvis_tilt(cycle, PELVIS_TILT))
+    cycle = with_head_that_follows(with_pelvis_tilt(cycle, PELVIS_TILT))
+    cycle = with_easy_shoulders_and_hands(cycle)
     left, right = (_growing(walk) for walk in walk_data_of(cycle, body))
     return Gait(KinematicWalk([(left, right)]), CycleOverlay(cycle, body.leg_length))
 
