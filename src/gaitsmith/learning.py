@@ -104,7 +104,7 @@ def learn(
         source=file if source is None else source,
         license=license,
     )
-    whole = _ARMS <= set(person.roles)
+    whole = set(person.roles) >= _ARMS
     return learned_gait(found, name=title, clip=file, upper_body="measured" if whole else "rules")
 
 

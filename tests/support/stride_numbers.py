@@ -96,9 +96,7 @@ def stride_numbers(motion, which=2):
         foot.append(read(pitch, late))
         upper = at(f"{side}LowerArm") - at(f"{side}UpperArm")
         arm.append(read(forward(upper)))
-        elbow.append(
-            read(np.degrees(_between(upper, at(f"{side}Hand") - at(f"{side}LowerArm"))))
-        )
+        elbow.append(read(np.degrees(_between(upper, at(f"{side}Hand") - at(f"{side}LowerArm")))))
         thighs.append(read(forward(thigh)))
     contact = motion.contacts[:, 0].any(-1)
     fine = np.linspace(t0, t2, 2000, endpoint=False)

@@ -7,13 +7,12 @@ by :mod:`gaitsmith.gait.events`, the later stride blended in by :mod:`gaitsmith.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.conventions import BALL, HEEL, LEFT, SIDES, TOE
 from gaitsmith.body.rig import soles_of
+from gaitsmith.conventions import BALL, HEEL, LEFT, SIDES, TOE
 from gaitsmith.errors import InfeasibleError
 from gaitsmith.gait.cycle import Cycle
 from gaitsmith.gait.events import FootPath, Stance, check_order, stances

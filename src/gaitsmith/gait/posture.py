@@ -33,7 +33,7 @@ def trunk_names(cycle: Cycle) -> tuple[str, ...]:
 def mean_rotation(q: Float[np.ndarray, "K 4"]) -> Float[np.ndarray, "4"]:
     """Rotation about which the excursions of ``q`` average to nothing."""
     mean = q.sum(0) / np.linalg.norm(q.sum(0))
-    for _ in range(10):
+    for _ in range(6):
         mean = multiply(mean, exp(log(multiply(inverse(mean), q)).mean(0)))
     return mean / np.linalg.norm(mean)
 
@@ -90,7 +90,7 @@ def with_easy_shoulders_and_hands(cycle: Cycle) -> Cycle:
         )
         arm = rotations[:, upper]
         swing = -log(multiply(arm, inverse(mean_rotation(arm))))[:, 0]
-        before = rotations[:, shoulder]
+        before = np.array(rotations[:, shoulder])
         rotations[:, shoulder] = multiply(before, about("y", -sign * CLAVICLE * swing))
         moved = multiply(inverse(rotations[:, shoulder]), before)
         rotations[:, upper] = multiply(moved, arm)

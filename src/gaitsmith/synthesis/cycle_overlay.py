@@ -46,7 +46,8 @@ ELBOW = 0.3
 #: CMU 07: less), within these factors.
 SWAY, SWAY_RANGE = -0.6, (0.7, 1.4)
 #: Part of a stride by which the pelvis turns earlier per unit of speed over the own one, and at
-#: most: pelvis and thorax turn nearly together when slow, against each other when fast (Lamoth 2002).
+#: most: pelvis and thorax turn nearly together when slow, against each other when fast (Lamoth
+#: 2002).
 EARLIER, EARLIEST = 0.35, 0.11
 #: Where speed has these effects, units of speed over the own one.
 FASTER = 0.6

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +17,7 @@ from gaitsmith.gait.posture import (
 from gaitsmith.synthesis.cycle_overlay import CycleOverlay
 from gaitsmith.synthesis.upper_body import Manner, RuleOverlay
 from gaitsmith.walks import KinematicWalk, winter
+from gaitsmith.walks.files import built_in
 from gaitsmith.walks.from_cycle import walk_data_of
 
 if TYPE_CHECKING:
@@ -32,7 +34,7 @@ if TYPE_CHECKING:
 PELVIS_TILT = float(np.radians(5.0))
 
 #: How the legs of ``neutral`` change with the step length. Bounce: 15.7 cm per meter of step where
-#: the whole is 3.7 cm at 0.71 m, 27 % of the compass arc at 0.9 m/s but 58-70 % above 1.1. Swing and
+#: the whole is 3.7 cm at 0.71 m; 27 % of the compass arc at 0.9 m/s, 58-70 % above 1.1. Swing and
 #: toe-off pitch (radians per leg length): the swing knee flexes 45, 55, 59, 61 deg at very slow to
 #: fast (Schwartz 2008), toe-off pitch is -38 - 17.5 v deg (CMU 07).
 BOUNCE_POWER, SWING_POWER, OFF_GAIN = 3.0, 1.6, 1.0
@@ -73,15 +75,20 @@ class Gait:
 
 def neutral(_: Manner | None = None) -> Gait:
     """A measured man's whole body, made symmetric, his arms relaxed [Rajagopal 2016]."""
-    cycle, body = neutral_cycle(), subject()
-    cycle = with_head_that_follows(with_pelvis_tilt(cycle, PELVIS_TILT))
+    return _neutral()
+
+
+@cache
+def _neutral() -> Gait:
+    cycle = with_head_that_follows(with_pelvis_tilt(neutral_cycle(), PELVIS_TILT))
     cycle = with_easy_shoulders_and_hands(cycle)
-    left, right = (_growing(walk) for walk in walk_data_of(cycle, body))
-    return Gait(KinematicWalk([(left, right)]), CycleOverlay(cycle, body.leg_length))
+    walk = KinematicWalk([built_in("neutral_step")])
+    return Gait(walk, CycleOverlay(cycle, subject().leg_length))
 
 
-def _growing(walk: WalkData) -> WalkData:
-    """Walk data that change with the step length as people do."""
+def neutral_step() -> WalkData:
+    """The legs of ``neutral``, that change with the step length as people's; see the data file."""
+    walk, _ = walk_data_of(neutral_cycle(), subject())
     old = walk.character
     knee, strike, off, meta = old.gains
     # sole and toes keep step with each other

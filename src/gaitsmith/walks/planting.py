@@ -17,7 +17,6 @@ import numpy as np
 from gaitsmith.body.sole import rolled_ankle
 from gaitsmith.conventions import BALL, HEEL, SIDE_SIGN, SIDES, TOE
 from gaitsmith.geometry.curves import smoothstep
-from gaitsmith.geometry.rotations import rotate
 from gaitsmith.motion.kinematics import forward_kinematics, sole_positions
 
 if TYPE_CHECKING:
@@ -41,9 +40,9 @@ _ONSET = 0.05
 _ON_TOES = float(np.radians(6.0))
 #: Toes: share of the sole's pitch that the meta angle has at toe-off where toes are not known.
 _META_SHARE = 0.75
-#: Weights of the splines' own size and of their second differences, against radians of angle: hips
-#: forward, hips up, then the pitch and the meta angle of both feet. Weaker on the hips, joints would
-#: be nearer to what was measured (1.4 instead of 1.9 deg, rms) and hips would lurch at every heel strike.
+#: Weights of the splines' own size and of their second differences, against radians of angle:
+#: hips forward, hips up, then the pitch and the meta angle of both feet. Weaker on the hips, joints
+#: are nearer to what was measured (1.4 instead of 1.9 deg, rms) and hips lurch at heel strikes.
 _SIZE = (0.0, 0.0, 0.35, 0.35, 0.15, 0.15)
 _BEND = (8.0, 12.0, 0.6, 0.6, 0.3, 0.3)
 
