@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
+    from gaitsmith.plan.footsteps import PlannedStep
     from gaitsmith.walks.model import SagittalStep, StepRequest
 
 
@@ -36,11 +37,30 @@ class Overlay:
 
 
 class Overlayer(Protocol):
-    """A way of carrying what is above the legs: by rule, or as a measured Cycle."""
+    """A way of carrying what is above the legs: by rule, or as a measured Cycle.
 
-    def __call__(self, body: Body, request: StepRequest, step: SagittalStep) -> Overlay:
-        """The overlay of one step; joins that of the steps before and after."""
+    Attributes
+    ----------
+    strides
+        Strides after which it repeats, 1 or 2.
+    """
+
+    strides: int
+
+    def __call__(
+        self, body: Body, request: StepRequest, step: SagittalStep, stride: int = 0
+    ) -> Overlay:
+        """The overlay of one step; joins that of the steps before and after.
+
+        ``stride`` counts strides from left heel strike to left heel strike, modulo ``strides``.
+        """
         ...
+
+
+def stride_of(step: PlannedStep) -> int:
+    """Number of the stride that ``step`` belongs to; one begins with each left heel strike."""
+    first = (step.index + step.stance.side) % 2  # side of the foot that the first step stands on
+    return (step.index + first) // 2
 
 
 def upper_joints(body: Body) -> tuple[str, ...]:

@@ -32,9 +32,12 @@ class WalkerState:
     hip_height
         Height of the hips over the stance foot's floor as the last step left them, before any
         correction, meters; None at the start of a walk.
+    duration
+        Seconds that the last step took; None at the start of a walk.
     """
 
     hip_height: float | None = None
+    duration: float | None = None
 
 
 @runtime_checkable

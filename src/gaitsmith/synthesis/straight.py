@@ -11,6 +11,7 @@ import numpy as np
 from gaitsmith.contact import ReferenceStep, StepCurves
 from gaitsmith.conventions import UP, ahead, leftward
 from gaitsmith.errors import InvalidInputError
+from gaitsmith.synthesis.overlay import stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
 from gaitsmith.synthesis.upper_body import RuleOverlay
 from gaitsmith.walks.model import SagittalStep, StepRequest, StraightWalk
@@ -126,13 +127,15 @@ class StraightGenerator:
             rise=rise,
             hip_height=state.hip_height,
             kind=step.kind,
+            previous_duration=state.duration,
         )
         setting = _Setting(
             direction=step.stance.direction,
             aside=(round(line.aside(step.stance), 12), round(line.aside(step.target), 12)),
             foot_heading=(step.stance.heading, step.target.heading),
         )
-        sagittal, curves = self._drawn(body, _rounded(request), setting)
+        stride = stride_of(step) % self._overlay.strides
+        sagittal, curves = self._drawn(body, _rounded(request), setting, stride)
         stance, swing = step.stance.side, 1 - step.stance.side
         foothold, heading = np.empty((2, 3)), np.empty(2)
         foothold[stance], foothold[swing] = step.stance.position, step.origin.position
@@ -147,20 +150,21 @@ class StraightGenerator:
             target=step.target.position,
             target_heading=step.target.heading,
         )
-        end = WalkerState(hip_height=float(sagittal.center[-1, 1]) - rise)
+        height = float(sagittal.center[-1, 1]) - rise
+        end = WalkerState(hip_height=height, duration=step.duration)
         return TabledStep(step.duration, end, reference, body, self._ground)
 
     def _draw(
-        self, body: Body, request: StepRequest, setting: _Setting
+        self, body: Body, request: StepRequest, setting: _Setting, stride: int
     ) -> tuple[SagittalStep, StepCurves]:
         sagittal = self._walk.step(body, request)
-        overlay = self._overlay(body, request, sagittal)
+        overlay = self._overlay(body, request, sagittal, stride)
         return sagittal, _curves(request.side, sagittal, overlay, setting)
 
 
 def _rounded(request: StepRequest) -> StepRequest:
     """Lengths to a picometer, so that equal steps are recognized and drawn once."""
-    height = request.hip_height
+    height, before = request.hip_height, request.previous_duration
     return replace(
         request,
         previous_length=round(request.previous_length, 12),
@@ -169,6 +173,7 @@ def _rounded(request: StepRequest) -> StepRequest:
         duration=round(request.duration, 12),
         rise=round(request.rise, 12),
         hip_height=None if height is None else round(height, 12),
+        previous_duration=None if before is None else round(before, 12),
     )
 
 

@@ -96,11 +96,15 @@ class Manner:
 class RuleOverlay:
     """The rules as an :class:`~gaitsmith.synthesis.overlay.Overlayer`."""
 
+    strides = 1
+
     def __init__(self, manner: Manner | None = None) -> None:
         self._manner = manner or Manner()
 
-    def __call__(self, body: Body, request: StepRequest, step: SagittalStep) -> Overlay:
-        """See :func:`rule_overlay`."""
+    def __call__(
+        self, body: Body, request: StepRequest, step: SagittalStep, stride: int = 0
+    ) -> Overlay:
+        """See :func:`rule_overlay`; every stride is the same."""
         return rule_overlay(body, request, step, self._manner)
 
 
