@@ -41,7 +41,7 @@ def log_dimensionless_jerk(path: Float[np.ndarray, "F 3"], fps: float) -> float 
     speed = np.linalg.norm(np.diff(path, axis=0), axis=-1) * RATE
     jerk = np.diff(path, 3, axis=0) * RATE**3
     duration = (len(path) - 1) / RATE
-    size = float((jerk**2).sum()) / RATE * duration**3
+    size = float((jerk**2).sum(-1).mean()) * duration**4  # the mean: three ends have no jerk
     if speed.max() < 1e-3 or size <= 0.0:
         return None
     return -float(np.log(size / float(speed.max()) ** 2))
