@@ -379,6 +379,17 @@ def test_the_same_walk_is_found_in_its_bvh(known, found):
         assert found[name] == pytest.approx(known[name], abs=atol), name
 
 
+@pytest.mark.parametrize("distance", [6.0, 7.0])
+def test_the_small_step_that_closes_to_standing_is_a_step(distance):
+    """It is slow enough for a stance, but in the air."""
+    motion = gaitsmith.walk(distance=distance, step_length=0.6, cadence=100.0, gait="neutral")
+    known = gaitsmith.measure(motion)
+    found = gaitsmith.measure(motion.with_(contacts=None, labels=None))
+    assert found["steps"] == known["steps"]
+    assert found["stances"] == known["stances"]
+    assert found["slip_mm_max"] < 8.0
+
+
 @pytest.mark.parametrize(
     ("fps", "asked"),
     [

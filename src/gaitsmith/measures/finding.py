@@ -22,6 +22,7 @@ from gaitsmith.measures.footsteps import (
     contacts_of_stances,
     footsteps_of_labels,
     footsteps_of_stances,
+    parted,
 )
 from gaitsmith.motion.kinematics import motion_kinematics, sole_positions
 from gaitsmith.motion.roles import humanoid_roles
@@ -188,7 +189,7 @@ def _stances(
     speed = walking_speed(motion.with_(root_position=hip.mean(1)))
     if speed < SLOWEST_WALK:
         speed = _STANDING
-    return stances(feet, motion.fps, speed=speed, leg_length=leg)
+    return parted(stances(feet, motion.fps, speed=speed, leg_length=leg), soles, motion.fps)
 
 
 def _floor(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaitsmith.conventions import BALL, HEEL
+from gaitsmith.measures.contacts import runs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,6 +24,8 @@ _DIRECTED = 0.15
 _ASIDE = 0.7
 #: Meters over the lowest that a point gets in a stance up to which it is on the ground.
 _DOWN = 0.003
+#: Meters over it at which the whole foot is in the air, and meters that it then goes in a step.
+_RAISED, _STEPPED = 0.006, 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +108,33 @@ def footsteps_of_labels(
         height=labels.footstep_position[:, 1],
         exact=True,
     )
+
+
+def parted(
+    found: Sequence[Stance], soles: Float[np.ndarray, "F 2 3 3"], fps: float
+) -> list[Stance]:
+    """``found``, parted where a foot that was slow enough for a stance was in the air.
+
+    So are small steps, such as the one that closes to standing.
+    """
+    out: list[Stance] = []
+    for stance in found:
+        flat = flat_frames(stance, len(soles), fps)
+        low = soles[flat, stance.side, :, 1].min(-1)
+        low, ball = low - low.min(), soles[flat, stance.side, BALL]
+        rest = stance
+        for a, b in runs(low > _DOWN):
+            if low[a:b].max() < _RAISED or a == 0 or b == len(low):
+                continue
+            way = ball[b] - ball[a - 1]
+            if np.hypot(way[0], way[2]) < _STEPPED:
+                continue
+            up, down = (flat.start + a) / fps, (flat.start + b) / fps
+            early, late = rest.cut in ("start", "both"), rest.cut in ("end", "both")
+            out.append(replace(rest, heel_off=up, toe_off=up, cut="start" if early else ""))
+            rest = replace(rest, heel_strike=down, foot_flat=down, cut="end" if late else "")
+        out.append(rest)
+    return sorted(out, key=lambda s: s.heel_strike)
 
 
 def contacts_of_stances(
