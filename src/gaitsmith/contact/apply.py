@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from gaitsmith.contact.foothold import Footholds
     from gaitsmith.contact.reference import Proposal
 
+#: Radians that are none.
+ROUNDING = 1e-12
 #: Curves whose sign carries meaning (which part of the sole bears) are read monotonely.
 MONOTONE = ("pitch", "meta", "bend")
 
@@ -127,7 +129,8 @@ class ContactPlan:
         phase = walk_phase - step
         down = bearing(self.stance, self.toe_off, step, phase)
         center, heading = read("center", 3), read("heading")
-        pitch, meta, bend = read("pitch", 2), read("meta", 2), read("bend", 2)
+        # a rounding error off level is level: the sign says what of the sole bears
+        pitch, meta, bend = _level(read("pitch", 2)), _level(read("meta", 2)), read("bend", 2)
         bend = np.where(down, np.where(pitch < 0.0, -pitch - meta, 0.0), bend)
         pelvis = multiply(about("y", heading), exp(read("pelvis", 3)))
         ankle, foot = self._feet(
@@ -182,6 +185,10 @@ class ContactPlan:
         share = np.where(swing & ~down, share[:, None], 0.0)[..., None]
         tilt = (1.0 - share) * stand.tilt + share * self.targets.tilt[step][:, None]
         return ankle, multiply(exp(tilt), level)
+
+
+def _level(angle: Float[np.ndarray, "F 2"]) -> Float[np.ndarray, "F 2"]:
+    return np.where(np.abs(angle) < ROUNDING, 0.0, angle)
 
 
 def _leave_as_rolled(

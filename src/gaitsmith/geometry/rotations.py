@@ -74,6 +74,19 @@ def exp(vector: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 4"]:
     return out
 
 
+def between(a: Float[np.ndarray, "3"], b: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4"]:
+    """Least rotation that turns the direction of ``a`` to that of ``b``.
+
+    None at all where there is no such rotation or many: opposite directions, no length.
+    """
+    size = float(np.linalg.norm(a) * np.linalg.norm(b))
+    axis = np.cross(a, b)
+    sine = float(np.linalg.norm(axis))
+    if sine <= 1e-12 * size:
+        return np.array(IDENTITY)
+    return exp(axis / sine * np.arctan2(sine, float(np.dot(a, b))))
+
+
 def log(q: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n 3"]:
     """Rotation vectors (axis times angle, angle in ``[0, pi]``) of unit quaternions."""
     q = np.where(q[..., 3:] < 0.0, -q, q)

@@ -14,6 +14,7 @@ from gaitsmith.gait.posture import (
     with_head_that_follows,
     with_pelvis_tilt,
 )
+from gaitsmith.plan.rhythm import UNEVEN
 from gaitsmith.synthesis.cycle_overlay import CycleOverlay
 from gaitsmith.synthesis.upper_body import Manner, RuleOverlay
 from gaitsmith.walks import KinematicWalk, winter
@@ -55,6 +56,8 @@ class Habits:
         Over leg length, between the lines of left and right feet.
     toe_out
         Radians of [left, right].
+    lengths, durations
+        Of the steps that land the [left, right] foot, over the mean.
     """
 
     step_length: float
@@ -62,6 +65,8 @@ class Habits:
     leg_length: float
     step_width: float
     toe_out: tuple[float, float]
+    lengths: tuple[float, float] = (1.0, 1.0)
+    durations: tuple[float, float] = (1.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -115,8 +120,18 @@ def learned(gait: LearnedGait, manner: Manner | None = None) -> Gait:
             leg_length=leg,
             step_width=gait.step_width / leg,
             toe_out=gait.toe_out,
+            lengths=_over_mean(*gait.step_lengths),
+            # the step on the left foot lands the right one
+            durations=_over_mean(1.0 - gait.cycle.events[1, 0], gait.cycle.events[1, 0]),
         ),
     )
+
+
+def _over_mean(left: float, right: float) -> tuple[float, float]:
+    """Both over their mean, as far as steps may be uneven."""
+    share = 2.0 * float(left) / float(left + right)
+    share = min(max(share, 1.0 - UNEVEN), 1.0 + UNEVEN)
+    return share, 2.0 - share
 
 
 #: Built-in gaits by the name the command line uses.

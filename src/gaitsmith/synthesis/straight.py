@@ -59,6 +59,27 @@ class _Line:
         return float((foot.position - self.here) @ self.left)
 
 
+def is_straight(step: PlannedStep) -> bool:
+    """Whether :class:`StraightGenerator` walks this step: no turn, two parallel lines, no lean.
+
+    A start or stop must have its feet side by side.
+    """
+    stance, target, origin = step.stance, step.target, step.origin
+    if not (stance.direction == target.direction == origin.direction):
+        return False
+    if stance.lean != (0.0, 0.0) or target.lean != (0.0, 0.0) or origin.lean != (0.0, 0.0):
+        return False
+    if stance.gaze != (0.0, 0.0) or target.gaze != (0.0, 0.0) or origin.gaze != (0.0, 0.0):
+        return False
+    way, left = ahead(stance.direction), leftward(stance.direction)
+    to_target, to_origin = target.position - stance.position, origin.position - stance.position
+    if abs(float((to_target - to_origin) @ left)) > STRAIGHT:
+        return False
+    if step.kind == "start" and abs(float(to_origin @ way)) > STRAIGHT:
+        return False
+    return step.kind != "stop" or abs(float(to_target @ way)) <= STRAIGHT
+
+
 @dataclass(frozen=True)
 class _Setting:
     """How a step lies on its line; pairs are (stance, swing). Equal settings share curves."""
@@ -107,14 +128,14 @@ class StraightGenerator:
             hip_height=state.hip_height,
             kind=step.kind,
             previous_duration=state.duration,
+            stride=stride_of(step) % self._overlay.strides,
         )
         setting = _Setting(
             direction=step.stance.direction,
             aside=(round(line.aside(step.stance), 12), round(line.aside(step.target), 12)),
             foot_heading=(step.stance.heading, step.target.heading),
         )
-        stride = stride_of(step) % self._overlay.strides
-        sagittal, curves = self._drawn(body, _rounded(request), setting, stride)
+        sagittal, curves = self._drawn(body, _rounded(request), setting)
         stance, swing = step.stance.side, 1 - step.stance.side
         foothold, heading = np.empty((2, 3)), np.empty(2)
         foothold[stance], foothold[swing] = step.stance.position, step.origin.position
@@ -134,10 +155,10 @@ class StraightGenerator:
         return TabledStep(step.duration, end, reference, body, self._ground)
 
     def _draw(
-        self, body: Body, request: StepRequest, setting: _Setting, stride: int
+        self, body: Body, request: StepRequest, setting: _Setting
     ) -> tuple[SagittalStep, StepCurves]:
         sagittal = self._walk.step(body, request)
-        overlay = self._overlay(body, request, sagittal, stride)
+        overlay = self._overlay(body, request, sagittal)
         return sagittal, _curves(request.side, sagittal, overlay, setting)
 
 

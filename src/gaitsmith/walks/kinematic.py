@@ -240,7 +240,8 @@ def densified(walk: WalkData) -> WalkData:
     interpolation.
     """
     off, meta = walk.toe_off, walk.meta_off
-    phase = phase_grid(walk.flat, walk.heel_off, meta, meta - 1.0, off)
+    # just after toe-off the foot turns from rolling to swinging: one more sample there
+    phase = phase_grid(walk.flat, walk.heel_off, meta, meta - 1.0, off, off + 0.4 / SAMPLES)
     later = 1.0 + phase[(phase > 0.0) & (phase <= off)]
     times = {
         "hip": phase,
