@@ -37,8 +37,8 @@ def asked(body, length, duration, **changes):
     return StepRequest(**values | changes)
 
 
-def laid(overlay, body, request, stride=0):
-    return overlay(body, request, the_walk().step(body, request), stride)
+def laid(overlay, body, request):
+    return overlay(body, request, the_walk().step(body, request))
 
 
 def two_strides():
@@ -72,8 +72,8 @@ def test_at_its_own_pace_on_its_own_body_it_is_the_cycle(kind, side, stride):
     length, duration = 0.5 * cycle.stride_length, 0.5 * cycle.duration
     length = min(length, body.leg_length)
     step = the_walk().step(body, asked(body, length, duration, side=side))
-    request = asked(body, 0.5 * cycle.stride_length, duration, side=side)
-    got = overlay(body, request, step, stride)
+    request = asked(body, 0.5 * cycle.stride_length, duration, side=side, stride=stride)
+    got = overlay(body, request, step)
     right = cycle.events[1, 0]
     phase = step.phase * right if side == 0 else right + step.phase * (1.0 - right)
     center, rotations = cycle.at(phase + stride % cycle.strides)
@@ -102,9 +102,10 @@ def test_steps_of_different_length_and_pace_join(make):
             side=(i + 1) % 2,
             previous_length=paces[i - 1][0],
             kind=kind,
+            stride=((i - 1) // 2) % strides,
             previous_duration=None if i == 1 else paces[i - 1][1],
         )
-        now = laid(overlay, body, request, ((i - 1) // 2) % strides)
+        now = laid(overlay, body, request)
         if last is not None:
             assert apart(exp(last.pelvis[-1]), exp(now.pelvis[0])) < 1e-3
             assert apart(exp(last.upper[-1]), exp(now.upper[0])).max() < 1e-3

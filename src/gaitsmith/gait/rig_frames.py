@@ -33,9 +33,11 @@ if TYPE_CHECKING:
 
 #: A hinge is believed if its mean sine of flexion is above this.
 _BENDS = 0.10
-#: Cosine of the angle within which a joint's own axes are taken for anatomical ones: 40 deg,
-#: and 13 deg for the hips, whose bones leave at odd angles.
-_SNAP, _SNAP_HIPS = 0.76, 0.974
+#: Cosine of the angle within which a joint's own axes are taken for anatomical ones: 20 deg, 40
+#: for neck and head, which may look down all the time, and 13 for the hips, whose bones leave at
+#: odd angles.
+_SNAP = {"hips": 0.974, "neck": 0.76, "head": 0.76}
+_SNAP_SPINE = 0.94
 #: Share of frames, the stillest ones, in which a foot is looked at for its sole.
 _STILLEST = 0.12
 #: Radians by which a still foot may differ from the rest pose's before the rest is believed.
@@ -196,10 +198,9 @@ def _trunk_frames(rig: Rig) -> dict[str, Float[np.ndarray, "4"]]:
             out[role] = rig.rest_turn
             continue
         across = rig.local(role, rig.left if role == "hips" else np.cross(UP, rig.facing))
-        near = _SNAP_HIPS if role == "hips" else _SNAP
         up = plumb if role in ("hips", "head") else line
         upright = frame((0, across), (1, rig.local(role, up)))
-        out[role] = _snapped(upright, near)
+        out[role] = _snapped(upright, _SNAP.get(role, _SNAP_SPINE))
     if rig.rest_turn is None:  # the hips' axis is told by the hip joints, exactly
         left = rig.local("hips", rig.left)
         out["hips"] = frame((0, left), (1, rotate(out["hips"], UP)))

@@ -105,10 +105,10 @@ class Asker:
         """Answers read off a grid of lengths that holds ``anchor``; None where that is no good."""
         out: list[Answer | None] = [None] * len(requests)
         grid = _Grid(self, body, anchor, requests)
-        groups: dict[tuple[str, int], list[int]] = {}
+        groups: dict[tuple[str, int, int], list[int]] = {}
         for i, request in enumerate(requests):
-            groups.setdefault((request.kind, request.side), []).append(i)
-        for (_, _), members in groups.items():
+            groups.setdefault((request.kind, request.side, request.stride), []).append(i)
+        for members in groups.values():
             for i, answer in zip(members, grid.read([requests[i] for i in members]), strict=True):
                 out[i] = answer
         return out
@@ -146,6 +146,7 @@ class _Grid:
                 next_length=0.0 if like.kind == "stop" else this,
                 duration=self._duration,
                 hip_height=None,
+                previous_duration=None,
             ),
         )
 

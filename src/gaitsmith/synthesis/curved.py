@@ -20,6 +20,7 @@ from gaitsmith.plan.course import lean_lever
 from gaitsmith.synthesis.asking import SHORTEST, Answer, Asker
 from gaitsmith.synthesis.bent import Bent, Flat2D
 from gaitsmith.synthesis.center import CenterPath, anchored, track
+from gaitsmith.synthesis.overlay import stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
 from gaitsmith.synthesis.straight import StraightGenerator, is_straight
 from gaitsmith.synthesis.swing_path import SwingPath
@@ -98,7 +99,15 @@ class CurvedGenerator:
         off a table of the straight walk's (:mod:`gaitsmith.synthesis.asking`).
         """
         bent = Bent.of(steps)
-        requests = [_request(body, s, bent.length[i]) for i, s in enumerate(steps)]
+        before = [state.duration, *(s.duration for s in steps[:-1])]
+        requests = [
+            replace(
+                _request(body, s, bent.length[i]),
+                previous_duration=None if last is None else round(last, 12),
+                stride=stride_of(s) % self._overlay.strides,
+            )
+            for i, (s, last) in enumerate(zip(steps, before, strict=True))
+        ]
         tabled = not self._exact and len(steps) > 1
         anchor = _steady(bent.length[:, 1])
         straight = [not self._exact and is_straight(s) for s in steps]
@@ -121,7 +130,8 @@ class CurvedGenerator:
                 answer = self._ask(body, replace(requests[i], hip_height=_rounded(state)), step)
             answer.raised_from(state.hip_height)
             answers.append(answer)
-            state = WalkerState(hip_height=float(answer.curves[-1, 1]) - requests[i].rise)
+            height = float(answer.curves[-1, 1]) - requests[i].rise
+            state = WalkerState(hip_height=height, duration=step.duration)
         if curved:
             rows = np.array(curved)
             part = Bent(*(getattr(bent, name)[rows] for name in Bent.__dataclass_fields__))
@@ -213,7 +223,8 @@ class CurvedGenerator:
                 target_heading=step.target.heading,
             )
             rise = float(step.target.position[1] - step.stance.position[1])
-            end = WalkerState(hip_height=float(answer.curves[-1, 1]) - rise)
+            height = float(answer.curves[-1, 1]) - rise
+            end = WalkerState(hip_height=height, duration=step.duration)
             out.append(TabledStep(step.duration, end, reference, body, self._ground))
         return out
 

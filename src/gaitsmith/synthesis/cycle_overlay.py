@@ -128,14 +128,12 @@ class CycleOverlay:
         self._arm_mean = np.stack([mean_rotation(q[:, i]) for i in self._arm_index])
         self._hang = [self._to_hanging(name) for name in self._arms]
 
-    def __call__(
-        self, body: Body, request: StepRequest, step: SagittalStep, stride: int = 0
-    ) -> Overlay:
+    def __call__(self, body: Body, request: StepRequest, step: SagittalStep) -> Overlay:
         """See :class:`gaitsmith.synthesis.overlay.Overlayer`."""
         ends = self._ends(body, request, step.phase)
         right = float(self._cycle.events[1, 0])
         own = step.phase * right if request.side == 0 else right + step.phase * (1.0 - right)
-        own = own + stride % self.strides
+        own = own + request.stride % self.strides
         center, rotations = self._cycle.at(own)
         pelvis = self._pelvis_of(ends, own, rotations)
         upper = self._upper(body, ends, rotations, pelvis)

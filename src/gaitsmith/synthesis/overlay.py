@@ -47,13 +47,8 @@ class Overlayer(Protocol):
 
     strides: int
 
-    def __call__(
-        self, body: Body, request: StepRequest, step: SagittalStep, stride: int = 0
-    ) -> Overlay:
-        """The overlay of one step; joins that of the steps before and after.
-
-        ``stride`` counts strides from left heel strike to left heel strike, modulo ``strides``.
-        """
+    def __call__(self, body: Body, request: StepRequest, step: SagittalStep) -> Overlay:
+        """The overlay of one step; joins that of the steps before and after."""
         ...
 
 

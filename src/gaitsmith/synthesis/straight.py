@@ -128,14 +128,14 @@ class StraightGenerator:
             hip_height=state.hip_height,
             kind=step.kind,
             previous_duration=state.duration,
+            stride=stride_of(step) % self._overlay.strides,
         )
         setting = _Setting(
             direction=step.stance.direction,
             aside=(round(line.aside(step.stance), 12), round(line.aside(step.target), 12)),
             foot_heading=(step.stance.heading, step.target.heading),
         )
-        stride = stride_of(step) % self._overlay.strides
-        sagittal, curves = self._drawn(body, _rounded(request), setting, stride)
+        sagittal, curves = self._drawn(body, _rounded(request), setting)
         stance, swing = step.stance.side, 1 - step.stance.side
         foothold, heading = np.empty((2, 3)), np.empty(2)
         foothold[stance], foothold[swing] = step.stance.position, step.origin.position
@@ -155,10 +155,10 @@ class StraightGenerator:
         return TabledStep(step.duration, end, reference, body, self._ground)
 
     def _draw(
-        self, body: Body, request: StepRequest, setting: _Setting, stride: int
+        self, body: Body, request: StepRequest, setting: _Setting
     ) -> tuple[SagittalStep, StepCurves]:
         sagittal = self._walk.step(body, request)
-        overlay = self._overlay(body, request, sagittal, stride)
+        overlay = self._overlay(body, request, sagittal)
         return sagittal, _curves(request.side, sagittal, overlay, setting)
 
 

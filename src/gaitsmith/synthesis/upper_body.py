@@ -101,9 +101,7 @@ class RuleOverlay:
     def __init__(self, manner: Manner | None = None) -> None:
         self._manner = manner or Manner()
 
-    def __call__(
-        self, body: Body, request: StepRequest, step: SagittalStep, stride: int = 0
-    ) -> Overlay:
+    def __call__(self, body: Body, request: StepRequest, step: SagittalStep) -> Overlay:
         """See :func:`rule_overlay`; every stride is the same."""
         return rule_overlay(body, request, step, self._manner)
 

@@ -41,6 +41,9 @@ class StepRequest:
     previous_duration
         Seconds of the step before; None: the same as this one. What goes with the speed of a walk
         joins from step to step by it.
+    stride
+        Number of the stride, from left heel strike to left heel strike, modulo the strides after
+        which the gait repeats; 0 for nearly all.
     """
 
     side: int
@@ -52,6 +55,7 @@ class StepRequest:
     hip_height: float | None = None
     kind: StepKind = "walk"
     previous_duration: float | None = None
+    stride: int = 0
 
 
 @dataclass(frozen=True, eq=False)

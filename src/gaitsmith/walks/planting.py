@@ -27,6 +27,10 @@ if TYPE_CHECKING:
 
 #: Samples of the stride, splines a stride, iterations.
 SAMPLES, SPLINES, ITERATIONS = 240, 30, 12
+#: Least share of the stride in which toes turn up before they leave.
+TURNING = 0.08
+#: How far toes bend down against the sole at most, radians.
+CURL = 0.1
 #: A sole is level below this pitch, and its toes lie below this meta angle, radians.
 LEVEL, LYING = float(np.radians(2.0)), float(np.radians(4.0))
 #: The toes of a living foot begin to slide before the force is gone, those of a planted one leave
@@ -175,17 +179,18 @@ def _marks(seen: _Measured, both: Float[np.ndarray, "2 4"], side: int) -> Float[
         flat = float(own[inside][pitch[inside].argmax()])
         heel_off = flat + 0.5 / SAMPLES
     else:
-        level = np.flatnonzero(pitch < LEVEL)
+        level = np.flatnonzero(np.abs(pitch) < LEVEL)
         flat = float(own[level[0]]) if len(level) else 0.5 * toe_off
         flat = min(max(flat, 0.02), 0.5 * toe_off)
         high = np.flatnonzero(pitch > -LEVEL)
         heel_off = float(own[high[-1]]) if len(high) else 0.6 * toe_off
-        heel_off = min(max(heel_off, flat + 0.02), 0.85 * toe_off)
+        latest = min(0.85 * toe_off, toe_off - TURNING - 0.02)
+        heel_off = min(max(heel_off, flat + 0.02), latest)
     lying = np.flatnonzero(-seen.toes[order, side][stands] < LYING)
     meta_off = float(own[lying[-1]]) if len(lying) else heel_off
     if not _has_toes(seen, side):
         meta_off = heel_off + 0.45 * (toe_off - heel_off)
-    meta_off = min(max(meta_off, heel_off + 0.02), toe_off - 0.04)
+    meta_off = min(max(meta_off, heel_off + 0.02), toe_off - TURNING)
     return np.array([flat, heel_off, meta_off, toe_off, events[0]])
 
 
@@ -312,6 +317,7 @@ class _Fit:
         pitch = np.where(heel, np.maximum(raised, 0.0), raised)
         pitch = np.where(self.down & ~heel, np.minimum(pitch, 0.0), pitch)
         meta = np.maximum(self.meta + self.free_meta * change[:, 2], 0.0)
+        meta = np.minimum(meta, np.maximum(-pitch, 0.0) + CURL)
         return center, pitch, meta
 
     def _angles(
