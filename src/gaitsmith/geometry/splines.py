@@ -151,24 +151,36 @@ class PlaneCurves:
         """Number of curves."""
         return self.coefficients.shape[1]
 
-    def rows(self, index: object) -> PlaneCurves:
+    def rows(self, index: Int[np.ndarray, "m"]) -> PlaneCurves:
         """The curves at ``index``."""
-        return PlaneCurves(self.coefficients[:, index])  # type: ignore[index]
+        apart = np.ascontiguousarray(self.coefficients.transpose(0, 2, 1))
+        return PlaneCurves(np.take(apart, index, axis=2).transpose(0, 2, 1))
 
     def at(self, u: Float[np.ndarray, "S"]) -> Float[np.ndarray, "S 2"]:
         """Each curve at its own parameter."""
-        v, out = u[:, None], self.coefficients[-1]
-        for c in self.coefficients[-2::-1]:
-            out = c + v * out
-        return out
+        out = np.empty((2, len(u)))
+        for axis, value in enumerate(out):  # each alone: rows of two are slow to work on
+            value[:] = self.coefficients[-1, :, axis]
+            for c in self.coefficients[-2::-1, :, axis]:
+                value *= u
+                value += c
+        return out.T
 
     def derivative(self, u: Float[np.ndarray, "S"]) -> Float[np.ndarray, "S 2"]:
         """First derivative of each at its own parameter."""
         degree = len(self.coefficients) - 1
-        v, out = u[:, None], degree * self.coefficients[-1]
-        for k in range(degree - 1, 0, -1):
-            out = k * self.coefficients[k] + v * out
-        return out
+        out = np.empty((2, len(u)))
+        for axis, value in enumerate(out):
+            np.multiply(self.coefficients[-1, :, axis], degree, out=value)
+            for k in range(degree - 1, 0, -1):
+                value *= u
+                value += k * self.coefficients[k, :, axis]
+        return out.T
+
+    def speed(self, u: Float[np.ndarray, "S"]) -> Float[np.ndarray, "S"]:
+        """Length of the first derivative."""
+        slope = self.derivative(u)
+        return np.sqrt(slope[:, 0] ** 2 + slope[:, 1] ** 2)
 
     def length(self) -> Float[np.ndarray, "S"]:
         """Arc length of each."""
@@ -217,9 +229,7 @@ class PlaneCurves:
         # one step of Newton from there
         curve, gone = self.rows(row), np.zeros(len(row))
         for node, weight in zip(_AT, _WEIGHT, strict=True):
-            speed = curve.derivative(edges[cell] + node * rise)
-            gone += weight * np.sqrt((speed * speed).sum(-1))
+            gone += weight * curve.speed(edges[cell] + node * rise)
         miss = gone * rise - (aim - first) * whole[row, 0]
-        speed = curve.derivative(edges[cell] + rise)
-        size = np.maximum(np.sqrt((speed * speed).sum(-1)), 0.02 * whole[row, 0])
+        size = np.maximum(curve.speed(edges[cell] + rise), 0.02 * whole[row, 0])
         return np.clip(edges[cell] + rise - miss / size, 0.0, 1.0)

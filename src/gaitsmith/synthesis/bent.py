@@ -44,8 +44,9 @@ class Bent:
     @staticmethod
     def of(steps: Sequence[PlannedStep]) -> Bent:
         """Rear foot, stance foot, target of each step, in this order."""
-        feet = [f for s in steps for f in (s.origin, s.stance, s.target)]
-        rows = np.array(
+        feet = {id(f): f for s in steps for f in (s.origin, s.stance, s.target)}
+        number = {key: i for i, key in enumerate(feet)}
+        each = np.array(
             [
                 (
                     f.position[0],
@@ -57,9 +58,11 @@ class Bent:
                     *f.lean,
                     *f.gaze,
                 )
-                for f in feet
+                for f in feet.values()
             ]
-        ).reshape(len(steps), 3, 11)
+        )
+        index = [[number[id(f)] for f in (s.origin, s.stance, s.target)] for s in steps]
+        rows = each[np.array(index)]
         stance = np.array([s.stance.side for s in steps])
         fields = {
             "middle": rows[..., 2:4],
@@ -117,7 +120,8 @@ class Flat2D:
         off = first + np.array([int(s.phase.searchsorted(s.toe_off)) for s in answers])
         swing = np.maximum((phase - toe_off[step]) / (1.0 - toe_off[step]), 0.0)
         asked = np.array([(s.previous, s.length) for s in answers])
-        curves = np.concatenate([s.curves for s in answers])
+        # each column contiguous: they are worked on one by one
+        curves = np.ascontiguousarray(np.concatenate([s.curves for s in answers]).T).T
         center = np.array(curves[:, COLUMNS["center"]])
         # very short steps are asked for longer: smoothly pressed together over the step
         ratio = np.where(asked > 0.0, length / np.where(asked > 0.0, asked, 1.0), 1.0)
