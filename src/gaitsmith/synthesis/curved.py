@@ -24,7 +24,7 @@ from gaitsmith.synthesis.bent import Bent, Flat2D
 from gaitsmith.synthesis.center import CenterPath, anchored, track
 from gaitsmith.synthesis.overlay import stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
-from gaitsmith.synthesis.straight import StraightGenerator, is_straight
+from gaitsmith.synthesis.straight import StraightGenerator
 from gaitsmith.synthesis.swing_path import SwingPath
 from gaitsmith.synthesis.turning import TRUNK_LEAN, bent_upper
 from gaitsmith.synthesis.upper_body import RuleOverlay
@@ -101,11 +101,13 @@ class CurvedGenerator:
         off a table of the straight walk's (:mod:`gaitsmith.synthesis.asking`).
         """
         bent = Bent.of(steps)
+        straight = [not self._exact and same for same in bent.straight(steps).tolist()]
+        if all(straight):
+            return self._straight.prepare_all(body, state, steps)
         requests = _requests(body, state, steps, bent.length, self._overlay.strides)
         tabled = not self._exact and len(steps) > 1
         anchor = _steady(bent.length[:, 1])
-        straight = [not self._exact and is_straight(s) for s in steps]
-        if tabled and not all(straight):
+        if tabled:
             _bend_ends(straight, bent.length, anchor)
         curved = [i for i, same in enumerate(straight) if not same]
         read: dict[int, Answer | None] = {}
@@ -125,8 +127,7 @@ class CurvedGenerator:
                 state = self._answered(body, state, steps[i], requests[i], read.get(i), answers)
         if curved:
             rows = np.array(curved)
-            part = Bent(*(getattr(bent, name)[rows] for name in Bent.__dataclass_fields__))
-            done = self._bend(body, [steps[i] for i in curved], part, answers)
+            done = self._bend(body, [steps[i] for i in curved], bent.rows(rows), answers)
             out |= dict(zip(curved, done, strict=True))
         return [out[i] for i in range(len(steps))]
 

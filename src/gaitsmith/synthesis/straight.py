@@ -11,10 +11,10 @@ import numpy as np
 from gaitsmith.contact import ReferenceStep, StepCurves
 from gaitsmith.conventions import UP, ahead, leftward
 from gaitsmith.errors import InvalidInputError
-from gaitsmith.synthesis.overlay import stride_of
+from gaitsmith.synthesis.overlay import overlays, stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
 from gaitsmith.synthesis.upper_body import RuleOverlay
-from gaitsmith.walks.model import SagittalStep, StepRequest, StraightWalk
+from gaitsmith.walks.model import StepRequest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from gaitsmith.ground import Ground
     from gaitsmith.plan.footsteps import PlannedStep
     from gaitsmith.synthesis.overlay import Overlay, Overlayer
+    from gaitsmith.walks.model import SagittalStep, StraightWalk
 
 #: Footsteps farther than this from one line, meters or radians, are not a straight walk.
 STRAIGHT = 1e-9
@@ -65,27 +66,6 @@ class _Lines:
         return _Lines(places[:, 1] + middle * left, along, aside - middle)
 
 
-def is_straight(step: PlannedStep) -> bool:
-    """Whether :class:`StraightGenerator` walks this step: no turn, two parallel lines, no lean.
-
-    A start or stop must have its feet side by side.
-    """
-    stance, target, origin = step.stance, step.target, step.origin
-    if not (stance.direction == target.direction == origin.direction):
-        return False
-    if stance.lean != (0.0, 0.0) or target.lean != (0.0, 0.0) or origin.lean != (0.0, 0.0):
-        return False
-    if stance.gaze != (0.0, 0.0) or target.gaze != (0.0, 0.0) or origin.gaze != (0.0, 0.0):
-        return False
-    way, left = ahead(stance.direction), leftward(stance.direction)
-    to_target, to_origin = target.position - stance.position, origin.position - stance.position
-    if abs(float((to_target - to_origin) @ left)) > STRAIGHT:
-        return False
-    if step.kind == "start" and abs(float(to_origin @ way)) > STRAIGHT:
-        return False
-    return step.kind != "stop" or abs(float(to_target @ way)) <= STRAIGHT
-
-
 @dataclass(frozen=True)
 class _Setting:
     """How a step lies on its line; pairs are (stance, swing). Equal settings share curves."""
@@ -117,7 +97,7 @@ class StraightGenerator:
         self, walk: StraightWalk, ground: Ground, overlay: Overlayer | None = None
     ) -> None:
         self._walk, self._ground, self._overlay = walk, ground, overlay or RuleOverlay()
-        self._drawn = lru_cache(maxsize=512)(self._draw)
+        self._sagittal = lru_cache(maxsize=512)(self._walk.step)
 
     def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
         """See :meth:`gaitsmith.synthesis.step.StepGenerator.prepare`."""
@@ -130,12 +110,11 @@ class StraightGenerator:
         lines = _Lines.of(steps)
         # to a picometer, so that equal steps are recognized and drawn once
         along, aside = np.round(lines.along, 12).tolist(), np.round(lines.aside, 12).tolist()
-        out: list[PreparedStep] = []
-        for i, (step, here) in enumerate(zip(steps, lines.here, strict=True)):
-            stance, target = step.stance, step.target
-            rise = float(target.position[1] - stance.position[1])
+        ends, asked = [], []
+        for i, step in enumerate(steps):
+            rise = float(step.target.position[1] - step.stance.position[1])
             request = StepRequest(
-                side=stance.side,
+                side=step.stance.side,
                 previous_length=-along[i][0],
                 length=along[i][2],
                 next_length=round(along[i][3] - along[i][2], 12) if step.following else 0.0,
@@ -147,34 +126,49 @@ class StraightGenerator:
                 stride=stride_of(step) % self._overlay.strides,
             )
             setting = _Setting(
-                direction=stance.direction,
+                direction=step.stance.direction,
                 aside=(aside[i][1], aside[i][2]),
-                foot_heading=(stance.heading, target.heading),
+                foot_heading=(step.stance.heading, step.target.heading),
             )
-            sagittal, curves = self._drawn(body, request, setting)
-            side, foothold, heading = stance.side, np.empty((2, 3)), np.empty(2)
-            foothold[side], foothold[1 - side] = stance.position, step.origin.position
-            heading[side], heading[1 - side] = stance.heading, step.origin.heading
-            reference = ReferenceStep.trusted(
-                curves,
-                here,
-                side,
-                sagittal.toe_off,
-                foothold,
-                heading,
-                target.position,
-                target.heading,
-            )
+            sagittal = self._sagittal(body, request)
             state = WalkerState(float(sagittal.center[-1, 1]) - rise, step.duration)
-            out.append(TabledStep(step.duration, state, reference, body, self._ground))
-        return out
+            ends.append(state)
+            asked.append((request, setting))
+        drawn = self._drawn(body, asked)
+        return [
+            self._placed(body, step, here, end, *drawn[one])
+            for step, here, end, one in zip(steps, lines.here, ends, asked, strict=True)
+        ]
 
-    def _draw(
-        self, body: Body, request: StepRequest, setting: _Setting
-    ) -> tuple[SagittalStep, StepCurves]:
-        sagittal = self._walk.step(body, request)
-        overlay = self._overlay(body, request, sagittal)
-        return sagittal, _curves(request.side, sagittal, overlay, setting)
+    def _drawn(
+        self, body: Body, asked: Sequence[tuple[StepRequest, _Setting]]
+    ) -> dict[tuple[StepRequest, _Setting], tuple[float, StepCurves]]:
+        """Toe-off and curves of every step that is asked for, each drawn once."""
+        each = list(dict.fromkeys(asked))
+        sagittal = [self._sagittal(body, request) for request, _ in each]
+        laid = overlays(self._overlay, body, [request for request, _ in each], sagittal)
+        return {
+            one: (step.toe_off, _curves(one[0].side, step, over, one[1]))
+            for one, step, over in zip(each, sagittal, laid, strict=True)
+        }
+
+    def _placed(
+        self,
+        body: Body,
+        step: PlannedStep,
+        here: Float[np.ndarray, "3"],
+        end: WalkerState,
+        toe_off: float,
+        curves: StepCurves,
+    ) -> PreparedStep:
+        stance, target = step.stance, step.target
+        side, foothold, heading = stance.side, np.empty((2, 3)), np.empty(2)
+        foothold[side], foothold[1 - side] = stance.position, step.origin.position
+        heading[side], heading[1 - side] = stance.heading, step.origin.heading
+        reference = ReferenceStep.trusted(
+            curves, here, side, toe_off, foothold, heading, target.position, target.heading
+        )
+        return TabledStep(step.duration, end, reference, body, self._ground)
 
 
 def _rounded(value: float | None) -> float | None:
