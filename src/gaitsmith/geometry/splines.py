@@ -29,38 +29,40 @@ class Spline:
     values: Float[np.ndarray, "n 2"]
     second: Float[np.ndarray, "n 2"]
 
-    def _cell(self, u: Float[np.ndarray, "m"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _cell(
+        self, u: Float[np.ndarray, "m"]
+    ) -> tuple[Float[np.ndarray, "m"], tuple[Float[np.ndarray, "4 2 m"], ...]]:
+        """How far beyond the knot before, and the cubic there: four coefficients, x and z apart."""
         i = np.clip(np.searchsorted(self.knots, u, side="right") - 1, 0, len(self.knots) - 2)
-        h = self.knots[i + 1] - self.knots[i]
-        return i, h[:, None], (u - self.knots[i])[:, None]
+        h = np.diff(self.knots)
+        y, m = self.values.T, self.second.T
+        slope = np.diff(y) / h - h * (2.0 * m[:, :-1] + m[:, 1:]) / 6.0
+        cubic = np.stack([y[:, :-1], slope, 0.5 * m[:, :-1], np.diff(m) / (6.0 * h)])
+        return u - self.knots[i], tuple(np.take(cubic, i, axis=2))
 
     def at(self, u: Float[np.ndarray, "m"]) -> Float[np.ndarray, "m 2"]:
         """Points."""
-        i, h, x = self._cell(u)
-        y0, y1, m0, m1 = self.values[i], self.values[i + 1], self.second[i], self.second[i + 1]
-        slope = (y1 - y0) / h - h * (2.0 * m0 + m1) / 6.0
-        return y0 + x * (slope + x * (0.5 * m0 + x * (m1 - m0) / (6.0 * h)))
+        x, (a, b, c, d) = self._cell(u)
+        return (a + x * (b + x * (c + x * d))).T
 
     def derivative(self, u: Float[np.ndarray, "m"]) -> Float[np.ndarray, "m 2"]:
         """First derivative."""
-        i, h, x = self._cell(u)
-        y0, y1, m0, m1 = self.values[i], self.values[i + 1], self.second[i], self.second[i + 1]
-        slope = (y1 - y0) / h - h * (2.0 * m0 + m1) / 6.0
-        return slope + x * (m0 + x * (m1 - m0) / (2.0 * h))
+        x, (_, b, c, d) = self._cell(u)
+        return (b + x * (2.0 * c + x * (3.0 * d))).T
 
     def curvature(self, u: Float[np.ndarray, "m"]) -> Float[np.ndarray, "m"]:
         """Change of heading per length, positive from +Z to +X."""
-        i, h, x = self._cell(u)
-        d = self.derivative(u)
-        dd = self.second[i] + x * (self.second[i + 1] - self.second[i]) / h
-        cross = d[:, 1] * dd[:, 0] - d[:, 0] * dd[:, 1]
-        return cross / np.maximum((d * d).sum(-1), 1e-18) ** 1.5
+        x, (_, b, c, d) = self._cell(u)
+        first, second = b + x * (2.0 * c + x * (3.0 * d)), 2.0 * c + 6.0 * x * d
+        cross = first[1] * second[0] - first[0] * second[1]
+        return cross / np.maximum(first[0] ** 2 + first[1] ** 2, 1e-18) ** 1.5
 
     def arc_length(self, u: Float[np.ndarray, "m"]) -> Float[np.ndarray, "m"]:
         """Arc length at rising parameters from the first of them, by Gauss in each gap."""
         gap = np.diff(u)
         inner = u[:-1, None] + gap[:, None] * _AT
-        speed = np.linalg.norm(self.derivative(inner.ravel()), axis=-1).reshape(inner.shape)
+        slope = self.derivative(inner.ravel())
+        speed = np.sqrt(slope[:, 0] ** 2 + slope[:, 1] ** 2).reshape(inner.shape)
         return np.concatenate([[0.0], np.cumsum(gap * (speed @ _WEIGHT))])
 
 

@@ -75,7 +75,7 @@ class Asker:
     def ask(self, body: Body, request: StepRequest) -> Answer:
         """The answer to just this request; a copy, to be changed at will."""
         found = self.ask_all(body, [request])[0]
-        return replace(found, curves=np.array(found.curves))
+        return replace(found, curves=np.array(found.curves, order="K"))
 
     def can(self, body: Body, request: StepRequest) -> bool:
         """Whether ``body`` can take such a step."""
@@ -135,7 +135,7 @@ def _answer(request: StepRequest, step: SagittalStep, over: Overlay) -> Answer:
         request.length,
         step.phase,
         step.toe_off,
-        np.concatenate(parts, axis=1),
+        np.concatenate([part.T for part in parts]).T,  # each column contiguous
         1.0 - smoothstep(step.phase / step.toe_off),
     )
 
@@ -241,14 +241,14 @@ class _Grid:
         for other in answers[1:]:
             if other.toe_off != model.toe_off or not np.array_equal(other.phase, model.phase):
                 return [None] * len(at.known)  # its events move with the length
-        tables = [a.curves for a in answers]
-        curves = np.zeros((len(at.known), *model.curves.shape))
-        part = np.empty_like(model.curves)
+        tables = [a.curves.T for a in answers]
+        curves = np.zeros((len(at.known), *tables[0].shape))
+        part = np.empty_like(tables[0])
         corner, share = at.corner.T.tolist(), at.share.T.tolist()
         for own, around, weights in zip(curves, corner, share, strict=True):
             for which, weight in zip(around, weights, strict=True):
                 if weight:
                     own += np.multiply(tables[which], weight, out=part)
         return [
-            Answer(0.0, 0.0, model.phase, model.toe_off, own, model.bearing) for own in curves
+            Answer(0.0, 0.0, model.phase, model.toe_off, own.T, model.bearing) for own in curves
         ]

@@ -144,7 +144,7 @@ class Flat2D:
         swing = np.maximum((phase - toe_off[step]) / (1.0 - toe_off[step]), 0.0)
         asked = np.array([(s.previous, s.length) for s in answers])
         # each column contiguous: they are worked on one by one
-        curves = np.ascontiguousarray(np.concatenate([s.curves for s in answers]).T).T
+        curves = np.concatenate([s.curves.T for s in answers], axis=1).T
         center = np.array(curves[:, COLUMNS["center"]])
         # very short steps are asked for longer: smoothly pressed together over the step
         ratio = np.where(asked > 0.0, length / np.where(asked > 0.0, asked, 1.0), 1.0)
