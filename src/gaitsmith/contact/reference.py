@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -14,7 +13,6 @@ from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import (
     end_slope_correction,
     hermite,
-    parabola_slopes,
     pchip_slopes,
 )
 
@@ -236,11 +234,11 @@ class ReferenceStep:
         """Copy with some fields replaced."""
         return replace(self, **changes)  # type: ignore[arg-type]
 
-    def joined(
-        self, start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]
-    ) -> ReferenceStep:
+    def joined(self, start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> ReferenceStep:
         """Copy with the speed of the center changed by ``start`` and ``end``."""
-        return ReferenceStep.trusted(**(self.__dict__ | {"speed_change": (start, end)}))
+        out = object.__new__(ReferenceStep)
+        out.__dict__.update(self.__dict__, speed_change=(start, end))
+        return out
 
     def refined(self) -> ReferenceStep:
         """Itself, with curves fine enough for the contact stage."""
