@@ -323,9 +323,7 @@ def test_a_single_step_from_standing_to_standing_is_refused():
 @pytest.mark.parametrize("radius", [0.6, 2.0])
 def test_nothing_jumps_at_heel_strike_and_toe_off_on_curves(radius, gait):
     plan, style = plan_along(Path.arc(radius, 5.0)), GAITS[gait](None)
-    prepared = prepare_walk(
-        plan, CurvedGenerator(style.walk, GROUND, style.overlay), ADULT, GROUND
-    )
+    prepared = prepare_walk(plan, CurvedGenerator(style.walk, GROUND, style.overlay), ADULT, GROUND)
     contact, count = prepared.contact, len(plan.kinds)
     leaving = (np.arange(contact.steps) + contact.toe_off)[contact.toe_off < 1.0]
     events = np.concatenate([np.arange(1.0, count), leaving])
