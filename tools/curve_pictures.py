@@ -254,9 +254,8 @@ def measured_turn(path: Path) -> dict[str, float]:
         axes[2].plot(data["speed_time"] - middle, data["speed"], color=color, lw=1.2, label=who)
         facts[f"head lead {who} (s)"] = middle - at["head"]
         facts[f"thorax lead {who} (s)"] = middle - at["thorax"]
-        facts[f"slowest over fastest {who}"] = float(
-            data["speed"].min() / np.percentile(data["speed"], 95)
-        )
+        corner = np.abs(data["speed_time"] - middle) < 1.0  # the man starts from rest
+        facts[f"slowest at the corner {who} (m/s)"] = float(data["speed"][corner].min())
         roll = smooth(data["roll"], fps, 1.1)
         near = np.abs(data["time"] - middle) < 0.6
         facts[f"trunk roll inside {who} (deg)"] = float(roll[near].mean() - roll[:10].mean())
