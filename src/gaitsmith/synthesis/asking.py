@@ -13,15 +13,16 @@ import numpy as np
 
 from gaitsmith.errors import InfeasibleStepError
 from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.synthesis.overlay import overlays
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float, Int
 
     from gaitsmith.body.body import Body
-    from gaitsmith.synthesis.overlay import Overlayer
-    from gaitsmith.walks.model import StepRequest, StraightWalk
+    from gaitsmith.synthesis.overlay import Overlay, Overlayer
+    from gaitsmith.walks.model import SagittalStep, StepRequest, StraightWalk
 
 #: Lengths of the grid are this far apart, over leg length; steps may be so short.
 GRAIN, SHORTEST = 0.2, 0.1
@@ -34,6 +35,7 @@ class Answer:
     """Sagittal curves and overlay of one step, as :class:`SagittalStep` and ``Overlay`` have them.
 
     ``previous`` and ``length`` are what was asked for; ``curves`` has all columns side by side.
+    ``bearing`` falls from 1 to 0 while the rear foot bears.
     """
 
     previous: float
@@ -41,12 +43,12 @@ class Answer:
     phase: Float[np.ndarray, "T"]
     toe_off: float
     curves: Float[np.ndarray, "T C"]
+    bearing: Float[np.ndarray, "T"]
 
     def raised_from(self, height: float | None) -> None:
         """Begin at hip height ``height``, as the step before ended."""
         if height is not None and abs(height - self.curves[0, 1]) > 1e-12:
-            gone = 1.0 - smoothstep(self.phase / self.toe_off)
-            self.curves[:, 1] += (height - self.curves[0, 1]) * gone
+            self.curves[:, 1] += (height - self.curves[0, 1]) * self.bearing
 
 
 #: Columns of ``Answer.curves``: the upper body's follow.
@@ -71,33 +73,28 @@ class Asker:
 
     def ask(self, body: Body, request: StepRequest) -> Answer:
         """The answer to just this request; a copy, to be changed at will."""
-        key = (body, request)
-        found = self._known.get(key)
-        if found is None:
-            step = self._walk.step(body, request)
-            over = self._overlay(body, request, step)
-            count = len(step.phase)
-            parts = (
-                step.center,
-                step.ankle.reshape(count, 4),
-                step.pitch,
-                step.meta,
-                step.bend,
-                over.sway[:, None],
-                over.pelvis,
-                over.upper.reshape(count, -1),
-            )
-            found = Answer(
-                request.previous_length,
-                request.length,
-                step.phase,
-                step.toe_off,
-                np.concatenate(parts, axis=1),
-            )
-            if len(self._known) >= REMEMBERED:
-                self._known.clear()
-            self._known[key] = found
+        found = self.ask_all(body, [request])[0]
         return replace(found, curves=np.array(found.curves))
+
+    def can(self, body: Body, request: StepRequest) -> bool:
+        """Whether ``body`` can take such a step."""
+        try:
+            self._walk.step(body, request)
+        except InfeasibleStepError:
+            return False
+        return True
+
+    def ask_all(self, body: Body, requests: Sequence[StepRequest]) -> list[Answer]:
+        """The answers to these requests, remembered: not to be changed."""
+        if len(self._known) + len(requests) > REMEMBERED:
+            self._known.clear()
+        new = [r for r in dict.fromkeys(requests) if (body, r) not in self._known]
+        if new:
+            steps = [self._walk.step(body, r) for r in new]
+            laid = overlays(self._overlay, body, new, steps)
+            for request, step, over in zip(new, steps, laid, strict=True):
+                self._known[body, request] = _answer(request, step, over)
+        return [self._known[body, r] for r in requests]
 
     def table(
         self, body: Body, requests: Sequence[StepRequest], anchor: float
@@ -114,8 +111,26 @@ class Asker:
         return out
 
 
-class _OffGridError(Exception):
-    """A length beyond the longest of the grid that this body can walk."""
+def _answer(request: StepRequest, step: SagittalStep, over: Overlay) -> Answer:
+    count = len(step.phase)
+    parts = (
+        step.center,
+        step.ankle.reshape(count, 4),
+        step.pitch,
+        step.meta,
+        step.bend,
+        over.sway[:, None],
+        over.pelvis,
+        over.upper.reshape(count, -1),
+    )
+    return Answer(
+        request.previous_length,
+        request.length,
+        step.phase,
+        step.toe_off,
+        np.concatenate(parts, axis=1),
+        1.0 - smoothstep(step.phase / step.toe_off),
+    )
 
 
 class _Grid:
@@ -134,101 +149,91 @@ class _Grid:
     def _node(self, index: int) -> float:
         return round(self._anchor + index * self._grain, 12)
 
-    def _ask(self, like: StepRequest, previous: int, length: int) -> Answer:
+    def _asked(self, like: StepRequest, previous: int, length: int) -> StepRequest:
         before = 0.0 if like.kind == "start" else self._node(previous)
         this = 0.0 if like.kind == "stop" else self._node(length)
-        return self._asker.ask(
-            self._body,
-            replace(
-                like,
-                previous_length=before,
-                length=this,
-                next_length=0.0 if like.kind == "stop" else this,
-                duration=self._duration,
-                hip_height=None,
-                previous_duration=None,
-            ),
+        return replace(
+            like,
+            previous_length=before,
+            length=this,
+            next_length=0.0 if like.kind == "stop" else this,
+            duration=self._duration,
+            hip_height=None,
+            previous_duration=None,
         )
 
     def _top(self, like: StepRequest, wanted: int) -> int:
         """The longest length of the grid, up to ``wanted``, that this body can walk."""
         if self._highest is None or self._highest < wanted:
             steady, top = replace(like, kind="walk"), wanted
-            while top > self._lowest + 1:
-                try:
-                    self._ask(steady, top, top)
-                    break
-                except InfeasibleStepError:
-                    top -= 1
-            self._highest = top
-            if top < wanted:
-                self._highest = max(top, self._lowest + 1)
-                return self._highest
+            while top > self._lowest + 1 and not self._asker.can(
+                self._body, self._asked(steady, top, top)
+            ):
+                top -= 1
+            self._highest = max(top, self._lowest + 1)
         return min(wanted, self._highest)
 
-    def _cell(self, like: StepRequest, length: float) -> tuple[int, float]:
-        """Index of the grid length below, and how far on to the next."""
-        index = int(np.floor((length - self._anchor) / self._grain + 1e-9))
-        index = max(index, self._lowest)
-        top = self._top(like, index + 1)
-        if top < index + 1:
-            raise _OffGridError
-        return index, (length - self._node(index)) / self._grain
+    def _cells(
+        self, like: StepRequest, lengths: Float[np.ndarray, "R"]
+    ) -> tuple[Int[np.ndarray, "R"], Float[np.ndarray, "R"], Bool[np.ndarray, "R"]]:
+        """Index of the grid length below, how far on to the next, and whether that is walked."""
+        index = np.floor((lengths - self._anchor) / self._grain + 1e-9).astype(np.int64)
+        index = np.maximum(index, self._lowest)
+        top = self._top(like, int(index.max()) + 1)
+        nodes = np.round(self._anchor + index * self._grain, 12)
+        return index, (lengths - nodes) / self._grain, index < top
 
     def read(self, requests: Sequence[StepRequest]) -> list[Answer | None]:
         """Answers to requests of one kind and side; None for those off the grid."""
-        cells: dict[int, tuple[tuple[int, float], tuple[int, float]]] = {}
-        for i, r in enumerate(requests):
-            try:
-                cells[i] = (
-                    (0, 0.0) if r.kind == "start" else self._cell(r, r.previous_length),
-                    (0, 0.0) if r.kind == "stop" else self._cell(r, r.length),
-                )
-            except _OffGridError:
-                continue
-        on_grid = [requests[i] for i in cells]
-        out: list[Answer | None] = [None] * len(requests)
-        if cells:
-            found = self._between(on_grid, list(cells.values()))
-            for i, answer in zip(cells, found, strict=True):
-                out[i] = answer
+        like, count = requests[0], len(requests)
+        none = (np.zeros(count, dtype=np.int64), np.zeros(count), np.ones(count, dtype=np.bool_))
+        asked = np.array([(r.previous_length, r.length) for r in requests])
+        i, a, before = none if like.kind == "start" else self._cells(like, asked[:, 0])
+        j, b, after = none if like.kind == "stop" else self._cells(like, asked[:, 1])
+        out: list[Answer | None] = [None] * count
+        known = np.flatnonzero(before & after)
+        if len(known):
+            cells = (i[known], a[known], j[known], b[known])
+            found = self._between([requests[k] for k in known], *cells)
+            for k, answer in zip(known.tolist(), found, strict=True):
+                out[k] = answer
         return out
 
     def _between(
         self,
         requests: Sequence[StepRequest],
-        cells: Sequence[tuple[tuple[int, float], tuple[int, float]]],
+        i: Int[np.ndarray, "R"],
+        a: Float[np.ndarray, "R"],
+        j: Int[np.ndarray, "R"],
+        b: Float[np.ndarray, "R"],
     ) -> Sequence[Answer | None]:
-        """Answers between the four steps around each."""
-        known: dict[tuple[int, int], int] = {}
-        answers: list[Answer] = []
-        corners, weights = [], []
-        for request, ((i, a), (j, b)) in zip(requests, cells, strict=True):
-            row, share = [], []
-            for di, wi in ((0, 1.0 - a), (1, a)):
-                for dj, wj in ((0, 1.0 - b), (1, b)):
-                    at = (i + di if wi else i, j + dj if wj else j)
-                    if at not in known:
-                        try:
-                            answers.append(self._ask(request, *at))
-                        except InfeasibleStepError:
-                            return [None] * len(requests)
-                        known[at] = len(answers) - 1
-                    row.append(known[at])
-                    share.append(wi * wj)
-            corners.append(row)
-            weights.append(share)
+        """Answers between the four steps around each: shares ``a``, ``b`` on from ``i``, ``j``."""
+        share = np.stack([(1.0 - a) * (1.0 - b), (1.0 - a) * b, a * (1.0 - b), a * b])
+        # a corner without a share is not asked for: the one at hand stands in
+        up, on = (a != 0.0).astype(np.int64), (b != 0.0).astype(np.int64)
+        corners = np.array([[i, j], [i, j + on], [i + up, j], [i + up, j + on]])
+        nodes, index = np.unique(
+            corners.transpose(0, 2, 1).reshape(-1, 2), axis=0, return_inverse=True
+        )
+        index = index.reshape(4, len(requests))
+        try:
+            answers = self._asker.ask_all(
+                self._body, [self._asked(requests[0], *node) for node in nodes.tolist()]
+            )
+        except InfeasibleStepError:
+            return [None] * len(requests)
         model = answers[0]
         for other in answers[1:]:
             if other.toe_off != model.toe_off or not np.array_equal(other.phase, model.phase):
                 return [None] * len(requests)  # its events move with the length
-        stacked = np.stack([a.curves for a in answers])
-        index, share = np.array(corners), np.array(weights)
-        curves = np.zeros((len(requests), *stacked.shape[1:]))
-        for k in range(4):
-            used = np.flatnonzero(share[:, k])
-            curves[used] += share[used, k, None, None] * stacked[index[used, k]]
+        stacked = np.stack([x.curves for x in answers]).reshape(len(answers), -1)
+        curves = np.zeros((len(requests), stacked.shape[1]))
+        for corner, weight in zip(index, share, strict=True):
+            used = np.flatnonzero(weight)
+            if len(used):
+                curves[used] += weight[used, None] * stacked[corner[used]]
+        curves = curves.reshape(len(requests), *model.curves.shape)
         return [
-            Answer(r.previous_length, r.length, model.phase, model.toe_off, curves[i])
-            for i, r in enumerate(requests)
+            replace(model, previous=r.previous_length, length=r.length, curves=own)
+            for r, own in zip(requests, curves, strict=True)
         ]

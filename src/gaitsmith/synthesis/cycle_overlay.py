@@ -12,7 +12,7 @@ from gaitsmith.conventions import SIDES
 from gaitsmith.gait.posture import mean_rotation, trunk_names
 from gaitsmith.geometry.curves import hermite, smoothstep
 from gaitsmith.geometry.rotations import IDENTITY, about, exp, inverse, log, multiply, rotate
-from gaitsmith.synthesis.overlay import Overlay, upper_joints
+from gaitsmith.synthesis.overlay import Overlay, Samples, upper_joints
 from gaitsmith.synthesis.upper_body import shifted_sway
 
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from gaitsmith.body.body import Body
     from gaitsmith.gait.cycle import Cycle
     from gaitsmith.walks.model import SagittalStep, StepRequest
+
+    _Pair = tuple[Float[np.ndarray, "M"], Float[np.ndarray, "M"]]
 
 #: How far the measured excursions may be scaled.
 MOST = 1.7
@@ -61,36 +63,38 @@ _ARM = ("Shoulder", "UpperArm", "LowerArm", "Hand")
 
 @dataclass(frozen=True)
 class _Ends:
-    """Step length and cadence over the cycle's own, at the ends of a step, and the way between."""
+    """Step length and cadence over the cycle's own, at the ends of the step of each of M samples,
+    and the way between.
+    """
 
-    length: tuple[float, float]
-    cadence: tuple[float, float]
-    ease: Float[np.ndarray, "T"]
+    length: _Pair
+    cadence: _Pair
+    ease: Float[np.ndarray, "M"]
 
-    def between(self, values: Sequence[float]) -> Float[np.ndarray, "T"]:
+    def between(self, values: Sequence[Float[np.ndarray, "M"]]) -> Float[np.ndarray, "M"]:
         """From the value at the begin to that at the end."""
         return values[0] + (values[1] - values[0]) * self.ease
 
-    def size(self, powers: tuple[float, float]) -> Float[np.ndarray, "T"]:
+    def size(self, powers: tuple[float, float]) -> Float[np.ndarray, "M"]:
         """Of an excursion that goes with these powers of length and cadence."""
         a, b = powers
         pairs = zip(self.length, self.cadence, strict=True)
-        return self.between([min(e**a * c**b, MOST) for e, c in pairs])
+        return self.between([np.minimum(e**a * c**b, MOST) for e, c in pairs])
 
     @property
-    def speed(self) -> list[float]:
+    def speed(self) -> list[Float[np.ndarray, "M"]]:
         """Over the cycle's own, at both ends."""
         return [e * c for e, c in zip(self.length, self.cadence, strict=True)]
 
     @property
-    def faster(self) -> Float[np.ndarray, "T"]:
+    def faster(self) -> Float[np.ndarray, "M"]:
         """Speed beyond the cycle's own, over it."""
-        return self.between([min(max(v - 1.0, 0.0), FASTER) for v in self.speed])
+        return self.between([np.clip(v - 1.0, 0.0, FASTER) for v in self.speed])
 
     @property
-    def hanging(self) -> Float[np.ndarray, "T"]:
+    def hanging(self) -> Float[np.ndarray, "M"]:
         """1 in standing, 0 in steps that are long enough to swing the arms."""
-        return self.between([max(1.0 - e / HANG, 0.0) ** 2 for e in self.length])
+        return self.between([np.maximum(1.0 - e / HANG, 0.0) ** 2 for e in self.length])
 
 
 class CycleOverlay:
@@ -130,51 +134,45 @@ class CycleOverlay:
 
     def __call__(self, body: Body, request: StepRequest, step: SagittalStep) -> Overlay:
         """See :class:`gaitsmith.synthesis.overlay.Overlayer`."""
-        ends = self._ends(body, request, step.phase)
-        right = float(self._cycle.events[1, 0])
-        own = step.phase * right if request.side == 0 else right + step.phase * (1.0 - right)
-        own = own + request.stride % self.strides
+        return self.many(body, [request], [step])[0]
+
+    def many(
+        self, body: Body, requests: Sequence[StepRequest], steps: Sequence[SagittalStep]
+    ) -> list[Overlay]:
+        """See :class:`gaitsmith.synthesis.overlay.BatchOverlayer`."""
+        samples = Samples.of(requests, steps)
+        ends = self._ends(body, requests, samples)
+        right, phase = float(self._cycle.events[1, 0]), samples.phase
+        own = np.where(samples.side == 0, phase * right, right + phase * (1.0 - right))
+        own = own + samples.stride % self.strides
         center, rotations = self._cycle.at(own)
         pelvis = self._pelvis_of(ends, own, rotations)
         upper = self._upper(body, ends, rotations, pelvis)
-        sway = self._sway(body, request, ends, step.phase, center[:, 0])
-        return Overlay(sway=sway, pelvis=log(pelvis), upper=upper)
+        sway = self._sway(body, samples, ends, center[:, 0])
+        return samples.split(sway, log(pelvis), upper)
 
-    def _ends(self, body: Body, request: StepRequest, phase: Float[np.ndarray, "T"]) -> _Ends:
-        def cadence(duration: float) -> float:
-            return float(self._duration * np.sqrt(body.leg_length) / duration)
-
-        lengths = (
-            0.0 if request.kind == "start" else request.previous_length,
-            0.0 if request.kind == "stop" else request.length,
+    def _ends(self, body: Body, requests: Sequence[StepRequest], samples: Samples) -> _Ends:
+        own = self._duration * np.sqrt(body.leg_length)
+        before = samples.spread([r.previous_duration or r.duration for r in requests])
+        this = samples.spread([r.duration for r in requests])
+        first, last = (
+            np.maximum(length, 0.0) / body.leg_length / self._length
+            for length in samples.lengths(requests)
         )
-        before = request.previous_duration or request.duration
-        return _Ends(
-            (
-                max(lengths[0], 0.0) / body.leg_length / self._length,
-                max(lengths[1], 0.0) / body.leg_length / self._length,
-            ),
-            (cadence(before), cadence(request.duration)),
-            smoothstep(phase),
-        )
+        return _Ends((first, last), (own / before, own / this), smoothstep(samples.phase))
 
     def _sway(
-        self,
-        body: Body,
-        request: StepRequest,
-        ends: _Ends,
-        phase: Float[np.ndarray, "T"],
-        path: Float[np.ndarray, "T"],
-    ) -> Float[np.ndarray, "T"]:
+        self, body: Body, samples: Samples, ends: _Ends, path: Float[np.ndarray, "M"]
+    ) -> Float[np.ndarray, "M"]:
         steady = (path - self._cycle.center[:, 0].mean()) * (body.hip_width / self._hip_width)
-        low, high = SWAY_RANGE
-        factor = [min(max(1.0 + SWAY * (v - 1.0), low), high) for v in ends.speed]
+        first, last = (np.clip(1.0 + SWAY * (v - 1.0), *SWAY_RANGE) for v in ends.speed)
         # a start or stop goes by the pace of its other end
-        if request.kind != "walk":
-            factor = [factor[1 if request.kind == "start" else 0]] * 2
-        steady = steady * ends.between(factor) / np.tanh(3.0)
-        e0, e1 = ends.length
-        return shifted_sway(phase, request, steady, e0, e1, 0.12 * body.hip_width)
+        first, last = (
+            np.where(samples.starts, last, first),
+            np.where(samples.stops, first, last),
+        )
+        steady = steady * ends.between([first, last]) / np.tanh(3.0)
+        return shifted_sway(samples, steady, *ends.length, 0.12 * body.hip_width)
 
     def _pelvis_of(
         self,
@@ -184,8 +182,8 @@ class CycleOverlay:
     ) -> Float[np.ndarray, "T 4"]:
         here = rotations[:, self._cycle.skeleton.index("hips")]
         away = log(multiply(inverse(self._pelvis), here))
-        shifts = [min(max(EARLIER * (v - 1.0), -EARLIEST), EARLIEST) for v in ends.speed]
-        if any(shifts):
+        shifts = [np.clip(EARLIER * (v - 1.0), -EARLIEST, EARLIEST) for v in ends.speed]
+        if np.any(shifts):
             count = len(self._cycle.center)
             grid = np.arange(-3, count + 3) / count
             at = (own + ends.between(shifts)) / self.strides % 1.0
