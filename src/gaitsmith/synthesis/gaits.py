@@ -24,6 +24,8 @@ from gaitsmith.walks.from_cycle import walk_data_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from jaxtyping import Float
+
     from gaitsmith.synthesis.overlay import Overlayer
     from gaitsmith.walks.data import WalkData
     from gaitsmith.walks.learned import LearnedGait
@@ -39,6 +41,9 @@ PELVIS_TILT = float(np.radians(5.0))
 #: toe-off pitch (radians per leg length): the swing knee flexes 45, 55, 59, 61 deg at very slow to
 #: fast (Schwartz 2008), toe-off pitch is -38 - 17.5 v deg (CMU 07).
 BOUNCE_POWER, SWING_POWER, OFF_GAIN = 3.0, 1.6, 1.0
+
+#: Smaller turns of a sole or of toes about their edge are none, radians.
+ONSET = 1e-4
 
 
 @dataclass(frozen=True)
@@ -99,7 +104,17 @@ def neutral_step() -> WalkData:
     # sole and toes keep step with each other
     gains = (knee, strike, OFF_GAIN, meta * OFF_GAIN / off)
     new = replace(old, gains=gains, bounce_power=BOUNCE_POWER, swing_power=SWING_POWER)
-    return walk.with_(character=new)
+    return walk.with_(
+        character=new,
+        meta=walk.meta.with_values(_rising(walk.meta.values)),
+        foot2=walk.foot2.with_values(-_rising(-walk.foot2.values)),
+    )
+
+
+def _rising(values: Float[np.ndarray, "n c"]) -> Float[np.ndarray, "n c"]:
+    """Nothing until they rise for good: a heel or a ball does not leave and come back by a hair."""
+    never_less = np.maximum.accumulate(values, axis=0)
+    return np.where(never_less < ONSET, 0.0, never_less)
 
 
 def winter_rules(manner: Manner | None = None) -> Gait:
