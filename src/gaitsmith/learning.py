@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -104,7 +105,7 @@ def learn(
         source=file if source is None else source,
         license=license,
     )
-    whole = _ARMS <= set(person.roles)
+    whole = set(person.roles) >= _ARMS
     return learned_gait(found, name=title, clip=file, upper_body="measured" if whole else "rules")
 
 
@@ -194,9 +195,7 @@ def read_events(path: str | Path) -> list[Stance]:
             times = [float(cell) for cell in row[1:]]
         except ValueError as error:
             raise FileFormatError(path, str(error), line=line) from None
-        good = len(times) == len(EVENTS) and all(
-            a <= b for a, b in zip(times, times[1:], strict=False)
-        )
+        good = len(times) == len(EVENTS) and all(a <= b for a, b in itertools.pairwise(times))
         if side not in SIDES or not good or not all(-1e6 < t < 1e6 for t in times):
             raise FileFormatError(
                 path,

@@ -136,9 +136,7 @@ def leg_angles(skeleton, positions, world, soles):
         )
         thigh, shin = knee - hip, ankle - knee
         swing = np.arctan2(thigh[:, 2], -thigh[:, 1])
-        flexion = np.arctan2(
-            np.linalg.norm(np.cross(thigh, shin), axis=-1), (thigh * shin).sum(-1)
-        )
+        flexion = np.arctan2(np.linalg.norm(np.cross(thigh, shin), axis=-1), (thigh * shin).sum(-1))
         sole = soles[:, side, 1] - soles[:, side, 0]
         ahead = np.hypot(sole[:, 0], sole[:, 2]) * np.sign(sole[:, 2])
         pitch = np.arctan2(sole[:, 1], ahead)

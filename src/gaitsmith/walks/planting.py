@@ -17,7 +17,6 @@ import numpy as np
 from gaitsmith.body.sole import rolled_ankle
 from gaitsmith.conventions import BALL, HEEL, SIDE_SIGN, SIDES, TOE
 from gaitsmith.geometry.curves import smoothstep
-from gaitsmith.geometry.rotations import rotate
 from gaitsmith.motion.kinematics import forward_kinematics, sole_positions
 
 if TYPE_CHECKING:
