@@ -99,15 +99,17 @@ class ContactPlan:
         # slope up to the very toe-off; only bearing feet use it
         free, curves = ~walk.bearing(), walk.curves
         curves["meta"] = np.where(free, -curves["pitch"] - curves["bend"], curves["meta"])
-        blocks, slopes, columns, width = [], [], {}, 0
-        for name, values in walk.curves.items():
-            flat = values.reshape(len(walk.at), -1)
-            slope = pchip_slopes if name in MONOTONE else parabola_slopes
-            blocks.append(flat)
-            slopes.append(slope(walk.at, flat))
-            columns[name] = slice(width, width + flat.shape[1])
-            width += flat.shape[1]
-        table, rates = np.concatenate(blocks, axis=1), np.concatenate(slopes, axis=1)
+        columns, width = {}, 0
+        for name, values in curves.items():
+            count = values[0].size
+            columns[name] = slice(width, width + count)
+            width += count
+        table = np.empty((len(walk.at), width))
+        for name, values in curves.items():
+            table[:, columns[name]] = values.reshape(len(walk.at), -1)
+        rates = parabola_slopes(walk.at, table)
+        for name in MONOTONE:
+            rates[:, columns[name]] = pchip_slopes(walk.at, curves[name])
         _leave_as_rolled(walk, stands, body, rates, columns)
         return ContactPlan(
             body=body,

@@ -74,7 +74,7 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
     walk.curves["center"][:, 1] -= down_by
     hip[..., 1] -= down_by[:, None]
     _raise_rear_heels(walk, body, stands, rear, hip)
-    _lock(walk, body, stands, down)
+    _lock(walk, body, stands, rear)
     _lower_the_rest(walk, body, down, rear, hip)
     check_reach(walk.at, hip, walk.curves["ankle"], down, leg_length=body.leg_length)
     for side in (0, 1):

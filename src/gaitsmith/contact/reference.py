@@ -92,8 +92,7 @@ class StepCurves:
     def trusted(**curves: Float[np.ndarray, "T ..."]) -> StepCurves:
         """Curves that are known to be right, taken as they are: for batches checked as a whole."""
         out = object.__new__(StepCurves)
-        for name, values in curves.items():
-            object.__setattr__(out, name, values)
+        out.__dict__.update(curves)
         return out
 
     def with_(self, **changes: object) -> StepCurves:
@@ -132,12 +131,36 @@ class StepCurves:
             curves[name] = np.concatenate(read).reshape(len(phase), *values.shape[1:])
         return StepCurves(phase=phase, **curves)
 
-    @cached_property
+    @property
     def end_speeds(self) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
         """Speed of the center at phase 0 and at phase 1, meters per step."""
-        first = parabola_slopes(self.phase[:3], self.center[:3])[0]
-        last = parabola_slopes(self.phase[-3:], self.center[-3:])[-1]
-        return first, last
+        first, last = end_speeds([self])
+        return first[0], last[0]
+
+
+def end_speeds(
+    curves: Sequence[StepCurves],
+) -> tuple[Float[np.ndarray, "S 3"], Float[np.ndarray, "S 3"]]:
+    """Speeds of the centers at phase 0 and at phase 1, meters per step."""
+    own = list({id(c): c for c in curves}.values())
+    index = {id(c): i for i, c in enumerate(own)}
+    each = np.array([index[id(c)] for c in curves])
+    out = []
+    for samples in ([0, 1, 2], [-1, -2, -3]):
+        x = np.array([_three(c.phase, samples) for c in own])
+        y = np.array([_three(c.center, samples) for c in own])
+        h0, h1 = (x[:, 1] - x[:, 0])[:, None], (x[:, 2] - x[:, 1])[:, None]
+        d0, d1 = (y[:, 1] - y[:, 0]) / h0, (y[:, 2] - y[:, 1]) / h1
+        out.append(((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1))
+    return out[0][each], out[1][each]
+
+
+def _three(values: Float[np.ndarray, "T *c"], samples: list[int]) -> Float[np.ndarray, "3 *c"]:
+    """Three samples at an end; of two, a third on their line."""
+    if len(values) > 2:
+        return values[samples]
+    first, second = values[samples[0]], values[samples[1]]
+    return np.array([first, second, 2.0 * second - first])
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,14 +205,52 @@ class ReferenceStep:
         if self.toe_off < 1.0 and self.toe_off not in self.curves.phase:
             raise InvalidInputError("phase must hold toe_off, so that the foot leaves on a sample")
 
+    @staticmethod
+    def trusted(
+        curves: StepCurves,
+        origin: Float[np.ndarray, "3"],
+        stance: int,
+        toe_off: float,
+        foothold: Float[np.ndarray, "2 3"],
+        foothold_heading: Float[np.ndarray, "2"],
+        target: Float[np.ndarray, "3"],
+        target_heading: float,
+        speed_change: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] | None = None,
+    ) -> ReferenceStep:
+        """A step that is known to be right: for batches checked as a whole."""
+        out = object.__new__(ReferenceStep)
+        out.__dict__.update(
+            curves=curves,
+            origin=origin,
+            stance=stance,
+            toe_off=toe_off,
+            foothold=foothold,
+            foothold_heading=foothold_heading,
+            target=target,
+            target_heading=target_heading,
+            speed_change=speed_change,
+        )
+        return out
+
     def with_(self, **changes: object) -> ReferenceStep:
         """Copy with some fields replaced."""
         return replace(self, **changes)  # type: ignore[arg-type]
+
+    def joined(self, start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> ReferenceStep:
+        """Copy with the speed of the center changed by ``start`` and ``end``."""
+        return ReferenceStep.trusted(**(self.__dict__ | {"speed_change": (start, end)}))
 
     def refined(self) -> ReferenceStep:
         """Itself, with curves fine enough for the contact stage."""
         fine = self.curves.refined(self.toe_off)
         return self if fine is self.curves else self.with_(curves=fine)
+
+
+def _fine(steps: Sequence[ReferenceStep]) -> list[ReferenceStep]:
+    """All steps refined; those that share their phases are looked at once."""
+    phases = {id(s.curves.phase): s.curves.phase for s in steps}
+    coarse = {k for k, p in phases.items() if np.diff(p).max() > FINEST * (1.0 + 1e-9)}
+    return [s.refined() if id(s.curves.phase) in coarse else s for s in steps]
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,19 +264,20 @@ class SwingEnd:
     @staticmethod
     def of(steps: Sequence[ReferenceStep], *, at_end: bool) -> SwingEnd:
         """Read it off the steps' own samples."""
+        places: dict[tuple[int, float], int] = {}
+        for s in steps:
+            key = (id(s.curves.phase), s.toe_off)
+            if not at_end and key not in places:
+                places[key] = int(s.curves.phase.searchsorted(min(s.toe_off, 1.0)))
         picks = [
-            (
-                s.curves,
-                1 - s.stance,
-                -1 if at_end else s.curves.phase.searchsorted(min(s.toe_off, 1.0)),
-            )
+            (s.curves, -1 if at_end else places[id(s.curves.phase), s.toe_off], 1 - s.stance)
             for s in steps
         ]
-        origin = np.stack([s.origin for s in steps])
+        origin = np.array([s.origin for s in steps])
         return SwingEnd(
-            ankle=origin + np.stack([c.ankle[i, side] for c, side, i in picks]),
-            heading=np.array([c.foot_heading[i, side] for c, side, i in picks]),
-            pitch=np.array([c.pitch[i, side] for c, side, i in picks]),
+            ankle=origin + np.array([c.ankle[i, side] for c, i, side in picks]),
+            heading=np.array([c.foot_heading[i, side] for c, i, side in picks]),
+            pitch=np.array([c.pitch[i, side] for c, i, side in picks]),
         )
 
 
@@ -278,7 +340,7 @@ def stack(steps: Sequence[ReferenceStep]) -> Proposal:
     if not steps:
         raise InvalidInputError("a walk needs at least one step")
     last = len(steps) - 1
-    steps = [s.refined() for s in steps]
+    steps = _fine(steps)
 
     def joined(name: str) -> Float[np.ndarray, "M ..."]:
         parts = [getattr(s.curves, name)[: None if i == last else -1] for i, s in enumerate(steps)]
@@ -287,7 +349,7 @@ def stack(steps: Sequence[ReferenceStep]) -> Proposal:
     counts = [len(s.curves.phase) - (i != last) for i, s in enumerate(steps)]
     index = np.repeat(np.arange(len(steps)), counts)
     curves = {name: joined(name) for name in CURVES}
-    origin = np.stack([s.origin for s in steps])[index]
+    origin = np.array([s.origin for s in steps])[index]
     for name in PLACES:
         curves[name] += origin if name == "center" else origin[:, None]
     phase = joined("phase")
@@ -301,9 +363,9 @@ def stack(steps: Sequence[ReferenceStep]) -> Proposal:
         curves=curves,
         stance=np.array([s.stance for s in steps]),
         toe_off=np.array([s.toe_off for s in steps]),
-        foothold=np.stack([s.foothold for s in steps]),
-        foothold_heading=np.stack([s.foothold_heading for s in steps]),
-        target=np.stack([s.target for s in steps]),
+        foothold=np.array([s.foothold for s in steps]),
+        foothold_heading=np.array([s.foothold_heading for s in steps]),
+        target=np.array([s.target for s in steps]),
         target_heading=np.array([s.target_heading for s in steps]),
         leaving=SwingEnd.of(steps, at_end=False),
         landing=SwingEnd.of(steps, at_end=True),

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
 
-#: Rows that :func:`hermite` works on at a time.
+#: Rows that are worked on at a time, so that they stay in the processor's cache.
 BLOCK = 512
 
 
@@ -28,19 +28,19 @@ def pchip_slopes(
     Fritsch & Butland's weighted harmonic mean inside, the three-point end formula kept
     shape-preserving. The curve never leaves the range of neighbouring samples.
     """
-    shape = (-1,) + (1,) * (y.ndim - 1)
-    h = np.diff(x).reshape(shape)
-    d = np.diff(y, axis=0) / h
+    h = np.diff(x)
+    rows = np.ascontiguousarray(y.reshape(len(x), -1).T)  # columns are worked on one by one
+    d = np.diff(rows, axis=1) / h
     if len(x) == 2:
-        return np.concatenate([d, d])
+        return np.repeat(d.T, 2, axis=0).reshape(y.shape)
     w1, w2 = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
-    same = d[:-1] * d[1:] > 0.0
-    safe = np.where(same, d[:-1], 1.0), np.where(same, d[1:], 1.0)
-    slopes = np.zeros_like(y)
-    slopes[1:-1] = np.where(same, (w1 + w2) / (w1 / safe[0] + w2 / safe[1]), 0.0)
-    slopes[0] = _pchip_end(h[0], h[1], d[0], d[1])
-    slopes[-1] = _pchip_end(h[-1], h[-2], d[-1], d[-2])
-    return slopes
+    same = d[:, :-1] * d[:, 1:] > 0.0
+    safe = np.where(same, d[:, :-1], 1.0), np.where(same, d[:, 1:], 1.0)
+    slopes = np.zeros_like(rows)
+    slopes[:, 1:-1] = np.where(same, (w1 + w2) / (w1 / safe[0] + w2 / safe[1]), 0.0)
+    slopes[:, 0] = _pchip_end(h[0], h[1], d[:, 0], d[:, 1])
+    slopes[:, -1] = _pchip_end(h[-1], h[-2], d[:, -1], d[:, -2])
+    return slopes.T.reshape(y.shape)
 
 
 def _pchip_end(
@@ -59,16 +59,26 @@ def parabola_slopes(
     x: Float[np.ndarray, "n"], y: Float[np.ndarray, "n *c"]
 ) -> Float[np.ndarray, "n *c"]:
     """Slopes of the parabola through each sample and its neighbours (smooth data)."""
-    shape = (-1,) + (1,) * (y.ndim - 1)
-    h = np.diff(x).reshape(shape)
-    d = np.diff(y, axis=0) / h
+    h = np.diff(x)
+    flat = y.reshape(len(x), -1)
     if len(x) == 2:
-        return np.concatenate([d, d])
-    slopes = np.empty_like(y)
-    slopes[1:-1] = (h[1:] * d[:-1] + h[:-1] * d[1:]) / (h[1:] + h[:-1])
-    slopes[0] = ((2.0 * h[0] + h[1]) * d[0] - h[0] * d[1]) / (h[0] + h[1])
-    slopes[-1] = ((2.0 * h[-1] + h[-2]) * d[-1] - h[-1] * d[-2]) / (h[-1] + h[-2])
-    return slopes
+        return np.repeat((flat[1:] - flat[:1]) / h[0], 2, axis=0).reshape(y.shape)
+    whole = h[1:] + h[:-1]
+    before = (h[1:] / (whole * h[:-1]))[:, None]
+    after = (h[:-1] / (whole * h[1:]))[:, None]
+    slopes = np.empty(flat.shape)
+    for first in range(1, len(x) - 1, BLOCK):
+        last = min(first + BLOCK, len(x) - 1)
+        here, value, shares = flat[first:last], slopes[first:last], slice(first - 1, last - 1)
+        np.subtract(here, flat[first - 1 : last - 1], out=value)
+        value *= before[shares]
+        other = flat[first + 1 : last + 1] - here
+        other *= after[shares]
+        value += other
+    for end, one, two, h0, h1 in ((0, 1, 2, h[0], h[1]), (-1, -2, -3, -h[-1], -h[-2])):
+        d0, d1 = (flat[one] - flat[end]) / h0, (flat[two] - flat[one]) / h1
+        slopes[end] = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)
+    return slopes.reshape(y.shape)
 
 
 def hermite(

@@ -29,38 +29,40 @@ class Spline:
     values: Float[np.ndarray, "n 2"]
     second: Float[np.ndarray, "n 2"]
 
-    def _cell(self, u: Float[np.ndarray, "m"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _cell(
+        self, u: Float[np.ndarray, "m"]
+    ) -> tuple[Float[np.ndarray, "m"], tuple[Float[np.ndarray, "4 2 m"], ...]]:
+        """How far beyond the knot before, and the cubic there: four coefficients, x and z apart."""
         i = np.clip(np.searchsorted(self.knots, u, side="right") - 1, 0, len(self.knots) - 2)
-        h = self.knots[i + 1] - self.knots[i]
-        return i, h[:, None], (u - self.knots[i])[:, None]
+        h = np.diff(self.knots)
+        y, m = self.values.T, self.second.T
+        slope = np.diff(y) / h - h * (2.0 * m[:, :-1] + m[:, 1:]) / 6.0
+        cubic = np.stack([y[:, :-1], slope, 0.5 * m[:, :-1], np.diff(m) / (6.0 * h)])
+        return u - self.knots[i], tuple(np.take(cubic, i, axis=2))
 
     def at(self, u: Float[np.ndarray, "m"]) -> Float[np.ndarray, "m 2"]:
         """Points."""
-        i, h, x = self._cell(u)
-        y0, y1, m0, m1 = self.values[i], self.values[i + 1], self.second[i], self.second[i + 1]
-        slope = (y1 - y0) / h - h * (2.0 * m0 + m1) / 6.0
-        return y0 + x * (slope + x * (0.5 * m0 + x * (m1 - m0) / (6.0 * h)))
+        x, (a, b, c, d) = self._cell(u)
+        return (a + x * (b + x * (c + x * d))).T
 
     def derivative(self, u: Float[np.ndarray, "m"]) -> Float[np.ndarray, "m 2"]:
         """First derivative."""
-        i, h, x = self._cell(u)
-        y0, y1, m0, m1 = self.values[i], self.values[i + 1], self.second[i], self.second[i + 1]
-        slope = (y1 - y0) / h - h * (2.0 * m0 + m1) / 6.0
-        return slope + x * (m0 + x * (m1 - m0) / (2.0 * h))
+        x, (_, b, c, d) = self._cell(u)
+        return (b + x * (2.0 * c + x * (3.0 * d))).T
 
     def curvature(self, u: Float[np.ndarray, "m"]) -> Float[np.ndarray, "m"]:
         """Change of heading per length, positive from +Z to +X."""
-        i, h, x = self._cell(u)
-        d = self.derivative(u)
-        dd = self.second[i] + x * (self.second[i + 1] - self.second[i]) / h
-        cross = d[:, 1] * dd[:, 0] - d[:, 0] * dd[:, 1]
-        return cross / np.maximum((d * d).sum(-1), 1e-18) ** 1.5
+        x, (_, b, c, d) = self._cell(u)
+        first, second = b + x * (2.0 * c + x * (3.0 * d)), 2.0 * c + 6.0 * x * d
+        cross = first[1] * second[0] - first[0] * second[1]
+        return cross / np.maximum(first[0] ** 2 + first[1] ** 2, 1e-18) ** 1.5
 
     def arc_length(self, u: Float[np.ndarray, "m"]) -> Float[np.ndarray, "m"]:
         """Arc length at rising parameters from the first of them, by Gauss in each gap."""
         gap = np.diff(u)
         inner = u[:-1, None] + gap[:, None] * _AT
-        speed = np.linalg.norm(self.derivative(inner.ravel()), axis=-1).reshape(inner.shape)
+        slope = self.derivative(inner.ravel())
+        speed = np.sqrt(slope[:, 0] ** 2 + slope[:, 1] ** 2).reshape(inner.shape)
         return np.concatenate([[0.0], np.cumsum(gap * (speed @ _WEIGHT))])
 
 
@@ -151,24 +153,36 @@ class PlaneCurves:
         """Number of curves."""
         return self.coefficients.shape[1]
 
-    def rows(self, index: object) -> PlaneCurves:
+    def rows(self, index: Int[np.ndarray, "m"]) -> PlaneCurves:
         """The curves at ``index``."""
-        return PlaneCurves(self.coefficients[:, index])  # type: ignore[index]
+        apart = np.ascontiguousarray(self.coefficients.transpose(0, 2, 1))
+        return PlaneCurves(np.take(apart, index, axis=2).transpose(0, 2, 1))
 
     def at(self, u: Float[np.ndarray, "S"]) -> Float[np.ndarray, "S 2"]:
         """Each curve at its own parameter."""
-        v, out = u[:, None], self.coefficients[-1]
-        for c in self.coefficients[-2::-1]:
-            out = c + v * out
-        return out
+        out = np.empty((2, len(u)))
+        for axis, value in enumerate(out):  # each alone: rows of two are slow to work on
+            value[:] = self.coefficients[-1, :, axis]
+            for c in self.coefficients[-2::-1, :, axis]:
+                value *= u
+                value += c
+        return out.T
 
     def derivative(self, u: Float[np.ndarray, "S"]) -> Float[np.ndarray, "S 2"]:
         """First derivative of each at its own parameter."""
         degree = len(self.coefficients) - 1
-        v, out = u[:, None], degree * self.coefficients[-1]
-        for k in range(degree - 1, 0, -1):
-            out = k * self.coefficients[k] + v * out
-        return out
+        out = np.empty((2, len(u)))
+        for axis, value in enumerate(out):
+            np.multiply(self.coefficients[-1, :, axis], degree, out=value)
+            for k in range(degree - 1, 0, -1):
+                value *= u
+                value += k * self.coefficients[k, :, axis]
+        return out.T
+
+    def speed(self, u: Float[np.ndarray, "S"]) -> Float[np.ndarray, "S"]:
+        """Length of the first derivative."""
+        slope = self.derivative(u)
+        return np.sqrt(slope[:, 0] ** 2 + slope[:, 1] ** 2)
 
     def length(self) -> Float[np.ndarray, "S"]:
         """Arc length of each."""
@@ -217,9 +231,7 @@ class PlaneCurves:
         # one step of Newton from there
         curve, gone = self.rows(row), np.zeros(len(row))
         for node, weight in zip(_AT, _WEIGHT, strict=True):
-            speed = curve.derivative(edges[cell] + node * rise)
-            gone += weight * np.sqrt((speed * speed).sum(-1))
+            gone += weight * curve.speed(edges[cell] + node * rise)
         miss = gone * rise - (aim - first) * whole[row, 0]
-        speed = curve.derivative(edges[cell] + rise)
-        size = np.maximum(np.sqrt((speed * speed).sum(-1)), 0.02 * whole[row, 0])
+        size = np.maximum(curve.speed(edges[cell] + rise), 0.02 * whole[row, 0])
         return np.clip(edges[cell] + rise - miss / size, 0.0, 1.0)

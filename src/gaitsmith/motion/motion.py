@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from gaitsmith.motion.skeleton import Skeleton
 
 
+#: Quaternions that are checked at a time.
+BLOCK = 8192
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Labels:
     """What a generator knows exactly and a reader of files has to guess.
@@ -115,15 +119,23 @@ class Motion:
             raise InvalidInputError(
                 f"labels are of {len(self.labels.phase)} frames, the motion has {frames}"
             )
-        error = np.abs(np.einsum("fjc,fjc->fj", rotations, rotations) - 1.0)
-        if error.size and error.max() > 2e-6:
-            frame, joint = np.unravel_index(error.argmax(), error.shape)
-            raise InvalidInputError(
-                f"rotations must be unit quaternions; frame {frame}, joint "
-                f"{self.skeleton.names[joint]!r} is off by {0.5 * error.max():.2e}"
-            )
+        self._check_unit(rotations)
         for name, value in fixed.items():
             object.__setattr__(self, name, value)
+
+    def _check_unit(self, rotations: Float[np.ndarray, "frames joints 4"]) -> None:
+        flat = rotations.reshape(-1, 4)
+        for first in range(0, len(flat), BLOCK):  # in the processor's cache
+            rows = flat[first : first + BLOCK]
+            squares = rows * rows
+            whole = squares[:, 0] + squares[:, 1] + squares[:, 2] + squares[:, 3]
+            error = np.abs(whole - 1.0)
+            if error.max() > 2e-6:
+                frame, joint = divmod(first + int(error.argmax()), rotations.shape[1])
+                raise InvalidInputError(
+                    f"rotations must be unit quaternions; frame {frame}, joint "
+                    f"{self.skeleton.names[joint]!r} is off by {0.5 * error.max():.2e}"
+                )
 
     def __len__(self) -> int:
         """Number of frames."""

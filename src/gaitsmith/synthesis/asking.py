@@ -6,6 +6,7 @@ steps are read between those of a grid of lengths, linearly. Steady steps lie on
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -74,7 +75,7 @@ class Asker:
     def ask(self, body: Body, request: StepRequest) -> Answer:
         """The answer to just this request; a copy, to be changed at will."""
         found = self.ask_all(body, [request])[0]
-        return replace(found, curves=np.array(found.curves))
+        return replace(found, curves=np.array(found.curves, order="K"))
 
     def can(self, body: Body, request: StepRequest) -> bool:
         """Whether ``body`` can take such a step."""
@@ -105,8 +106,14 @@ class Asker:
         groups: dict[tuple[str, int, int], list[int]] = {}
         for i, request in enumerate(requests):
             groups.setdefault((request.kind, request.side, request.stride), []).append(i)
-        for members in groups.values():
-            for i, answer in zip(members, grid.read([requests[i] for i in members]), strict=True):
+        places = [grid.places([requests[i] for i in members]) for members in groups.values()]
+        with suppress(InfeasibleStepError):  # then those that can be asked are asked group by group
+            self.ask_all(body, [r for at in places for r in at.nodes])
+        for members, at in zip(groups.values(), places, strict=True):
+            for k, answer in zip(at.known.tolist(), grid.read(at), strict=True):
+                i = members[k]
+                if answer is not None:
+                    answer.previous, answer.length = requests[i].previous_length, requests[i].length
                 out[i] = answer
         return out
 
@@ -128,9 +135,29 @@ def _answer(request: StepRequest, step: SagittalStep, over: Overlay) -> Answer:
         request.length,
         step.phase,
         step.toe_off,
-        np.concatenate(parts, axis=1),
+        np.concatenate([part.T for part in parts]).T,  # each column contiguous
         1.0 - smoothstep(step.phase / step.toe_off),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Where R requests of one kind and side lie between the ``nodes`` of the grid.
+
+    Attributes
+    ----------
+    known
+        ``(R,)`` which of the requests those are; the others are off the grid.
+    nodes
+        What is asked at the nodes around them.
+    corner, share
+        ``(4, R)`` the nodes around each, and how much they count.
+    """
+
+    known: Int[np.ndarray, "R"]
+    nodes: list[StepRequest]
+    corner: Int[np.ndarray, "4 R"]
+    share: Float[np.ndarray, "4 R"]
 
 
 class _Grid:
@@ -183,31 +210,15 @@ class _Grid:
         nodes = np.round(self._anchor + index * self._grain, 12)
         return index, (lengths - nodes) / self._grain, index < top
 
-    def read(self, requests: Sequence[StepRequest]) -> list[Answer | None]:
-        """Answers to requests of one kind and side; None for those off the grid."""
+    def places(self, requests: Sequence[StepRequest]) -> _Places:
+        """Places of requests of one kind, side and stride."""
         like, count = requests[0], len(requests)
         none = (np.zeros(count, dtype=np.int64), np.zeros(count), np.ones(count, dtype=np.bool_))
         asked = np.array([(r.previous_length, r.length) for r in requests])
         i, a, before = none if like.kind == "start" else self._cells(like, asked[:, 0])
         j, b, after = none if like.kind == "stop" else self._cells(like, asked[:, 1])
-        out: list[Answer | None] = [None] * count
         known = np.flatnonzero(before & after)
-        if len(known):
-            cells = (i[known], a[known], j[known], b[known])
-            found = self._between([requests[k] for k in known], *cells)
-            for k, answer in zip(known.tolist(), found, strict=True):
-                out[k] = answer
-        return out
-
-    def _between(
-        self,
-        requests: Sequence[StepRequest],
-        i: Int[np.ndarray, "R"],
-        a: Float[np.ndarray, "R"],
-        j: Int[np.ndarray, "R"],
-        b: Float[np.ndarray, "R"],
-    ) -> Sequence[Answer | None]:
-        """Answers between the four steps around each: shares ``a``, ``b`` on from ``i``, ``j``."""
+        i, a, j, b = i[known], a[known], j[known], b[known]
         share = np.stack([(1.0 - a) * (1.0 - b), (1.0 - a) * b, a * (1.0 - b), a * b])
         # a corner without a share is not asked for: the one at hand stands in
         up, on = (a != 0.0).astype(np.int64), (b != 0.0).astype(np.int64)
@@ -215,25 +226,29 @@ class _Grid:
         nodes, index = np.unique(
             corners.transpose(0, 2, 1).reshape(-1, 2), axis=0, return_inverse=True
         )
-        index = index.reshape(4, len(requests))
+        asks = [self._asked(like, *node) for node in nodes.tolist()]
+        return _Places(known, asks, index.reshape(4, len(known)), share)
+
+    def read(self, at: _Places) -> Sequence[Answer | None]:
+        """Answers at ``at``, of the lengths of the grid; None where its nodes are no good."""
+        if not len(at.known):
+            return []
         try:
-            answers = self._asker.ask_all(
-                self._body, [self._asked(requests[0], *node) for node in nodes.tolist()]
-            )
+            answers = self._asker.ask_all(self._body, at.nodes)
         except InfeasibleStepError:
-            return [None] * len(requests)
+            return [None] * len(at.known)
         model = answers[0]
         for other in answers[1:]:
             if other.toe_off != model.toe_off or not np.array_equal(other.phase, model.phase):
-                return [None] * len(requests)  # its events move with the length
-        stacked = np.stack([x.curves for x in answers]).reshape(len(answers), -1)
-        curves = np.zeros((len(requests), stacked.shape[1]))
-        for corner, weight in zip(index, share, strict=True):
-            used = np.flatnonzero(weight)
-            if len(used):
-                curves[used] += weight[used, None] * stacked[corner[used]]
-        curves = curves.reshape(len(requests), *model.curves.shape)
+                return [None] * len(at.known)  # its events move with the length
+        tables = [a.curves.T for a in answers]
+        curves = np.zeros((len(at.known), *tables[0].shape))
+        part = np.empty_like(tables[0])
+        corner, share = at.corner.T.tolist(), at.share.T.tolist()
+        for own, around, weights in zip(curves, corner, share, strict=True):
+            for which, weight in zip(around, weights, strict=True):
+                if weight:
+                    own += np.multiply(tables[which], weight, out=part)
         return [
-            replace(model, previous=r.previous_length, length=r.length, curves=own)
-            for r, own in zip(requests, curves, strict=True)
+            Answer(0.0, 0.0, model.phase, model.toe_off, own.T, model.bearing) for own in curves
         ]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,11 +12,12 @@ from gaitsmith.conventions import SIDE_SIGN
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.plan.course import course_pieces
 from gaitsmith.synthesis.asking import COLUMNS
+from gaitsmith.synthesis.straight import STRAIGHT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from jaxtyping import Float, Int
+    from jaxtyping import Bool, Float, Int
 
     from gaitsmith.geometry.splines import PlaneCurves
     from gaitsmith.plan.footsteps import PlannedStep
@@ -37,15 +39,15 @@ class Bent:
     direction: Float[np.ndarray, "S 3"]
     curvature: Float[np.ndarray, "S 3"]
     middle: Float[np.ndarray, "S 3 2"]
-    length: Float[np.ndarray, "S 2"]
     lean: Float[np.ndarray, "S 3 2"]
     gaze: Float[np.ndarray, "S 3 2"]
 
     @staticmethod
     def of(steps: Sequence[PlannedStep]) -> Bent:
         """Rear foot, stance foot, target of each step, in this order."""
-        feet = [f for s in steps for f in (s.origin, s.stance, s.target)]
-        rows = np.array(
+        feet = {id(f): f for s in steps for f in (s.origin, s.stance, s.target)}
+        number = {key: i for i, key in enumerate(feet)}
+        each = np.array(
             [
                 (
                     f.position[0],
@@ -57,26 +59,50 @@ class Bent:
                     *f.lean,
                     *f.gaze,
                 )
-                for f in feet
+                for f in feet.values()
             ]
-        ).reshape(len(steps), 3, 11)
+        )
+        index = [[number[id(f)] for f in (s.origin, s.stance, s.target)] for s in steps]
+        rows = each[np.array(index)]
         stance = np.array([s.stance.side for s in steps])
-        fields = {
-            "middle": rows[..., 2:4],
-            "direction": rows[..., 5],
-            "curvature": rows[..., 6],
-        }
-        length = np.stack([p.length() for p in pieces(**fields)], axis=-1)
         return Bent(
             stance=stance,
             sign=SIDE_SIGN[stance],
             place=rows[..., 0:2],
             heading=rows[..., 4],
-            length=length,
+            direction=rows[..., 5],
+            curvature=rows[..., 6],
+            middle=rows[..., 2:4],
             lean=rows[..., 7:9],
             gaze=rows[..., 9:11],
-            **fields,
         )
+
+    @cached_property
+    def length(self) -> Float[np.ndarray, "S 2"]:
+        """Arc lengths of the curves before and after."""
+        both = pieces(self.middle, self.direction, self.curvature)
+        return np.stack([p.length() for p in both], axis=-1)
+
+    def rows(self, index: Int[np.ndarray, "k"]) -> Bent:
+        """Some of the steps."""
+        return Bent(*(getattr(self, f.name)[index] for f in fields(self)))
+
+    def straight(self, steps: Sequence[PlannedStep]) -> Bool[np.ndarray, "S"]:
+        """Which steps :class:`StraightGenerator` walks: no turn, two parallel lines, no lean.
+
+        A start or stop must have its feet side by side.
+        """
+        out = (self.direction == self.direction[:, 1:2]).all(-1)
+        out &= ~(self.lean.any(axis=(1, 2)) | self.gaze.any(axis=(1, 2)))
+        sin, cos = np.sin(self.direction[:, 1:2]), np.cos(self.direction[:, 1:2])
+        away = self.place - self.place[:, 1:2]
+        along = away[..., 0] * sin + away[..., 1] * cos
+        aside = away[..., 0] * cos - away[..., 1] * sin
+        out &= np.abs(aside[:, 2] - aside[:, 0]) <= STRAIGHT
+        for kind, foot in (("start", 0), ("stop", 2)):
+            which = np.array([s.kind == kind for s in steps])
+            out &= ~which | (np.abs(along[:, foot]) <= STRAIGHT)
+        return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +143,8 @@ class Flat2D:
         off = first + np.array([int(s.phase.searchsorted(s.toe_off)) for s in answers])
         swing = np.maximum((phase - toe_off[step]) / (1.0 - toe_off[step]), 0.0)
         asked = np.array([(s.previous, s.length) for s in answers])
-        curves = np.concatenate([s.curves for s in answers])
+        # each column contiguous: they are worked on one by one
+        curves = np.concatenate([s.curves.T for s in answers], axis=1).T
         center = np.array(curves[:, COLUMNS["center"]])
         # very short steps are asked for longer: smoothly pressed together over the step
         ratio = np.where(asked > 0.0, length / np.where(asked > 0.0, asked, 1.0), 1.0)

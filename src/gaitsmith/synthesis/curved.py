@@ -7,7 +7,9 @@ of a walk are bent at once, on all their samples.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +24,7 @@ from gaitsmith.synthesis.bent import Bent, Flat2D
 from gaitsmith.synthesis.center import CenterPath, anchored, track
 from gaitsmith.synthesis.overlay import stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
-from gaitsmith.synthesis.straight import StraightGenerator, is_straight
+from gaitsmith.synthesis.straight import StraightGenerator
 from gaitsmith.synthesis.swing_path import SwingPath
 from gaitsmith.synthesis.turning import TRUNK_LEAN, bent_upper
 from gaitsmith.synthesis.upper_body import RuleOverlay
@@ -99,19 +101,13 @@ class CurvedGenerator:
         off a table of the straight walk's (:mod:`gaitsmith.synthesis.asking`).
         """
         bent = Bent.of(steps)
-        before = [state.duration, *(s.duration for s in steps[:-1])]
-        requests = [
-            replace(
-                _request(body, s, bent.length[i]),
-                previous_duration=None if last is None else round(last, 12),
-                stride=stride_of(s) % self._overlay.strides,
-            )
-            for i, (s, last) in enumerate(zip(steps, before, strict=True))
-        ]
+        straight = [not self._exact and same for same in bent.straight(steps).tolist()]
+        if all(straight):
+            return self._straight.prepare_all(body, state, steps)
+        requests = _requests(body, state, steps, bent.length, self._overlay.strides)
         tabled = not self._exact and len(steps) > 1
         anchor = _steady(bent.length[:, 1])
-        straight = [not self._exact and is_straight(s) for s in steps]
-        if tabled and not all(straight):
+        if tabled:
             _bend_ends(straight, bent.length, anchor)
         curved = [i for i, same in enumerate(straight) if not same]
         read: dict[int, Answer | None] = {}
@@ -120,24 +116,36 @@ class CurvedGenerator:
             read = dict(zip(curved, table, strict=True))
         out: dict[int, PreparedStep] = {}
         answers: list[Answer] = []
-        for i, step in enumerate(steps):
-            if straight[i]:
-                out[i] = self._straight.prepare(body, state, step)
-                state = out[i].end
+        for same, run in groupby(range(len(steps)), straight.__getitem__):
+            which = list(run)
+            if same:
+                done = self._straight.prepare_all(body, state, [steps[i] for i in which])
+                out |= dict(zip(which, done, strict=True))
+                state = done[-1].end
                 continue
-            answer = read.get(i)
-            if answer is None:
-                answer = self._ask(body, replace(requests[i], hip_height=_rounded(state)), step)
-            answer.raised_from(state.hip_height)
-            answers.append(answer)
-            height = float(answer.curves[-1, 1]) - requests[i].rise
-            state = WalkerState(hip_height=height, duration=step.duration)
+            for i in which:
+                state = self._answered(body, state, steps[i], requests[i], read.get(i), answers)
         if curved:
             rows = np.array(curved)
-            part = Bent(*(getattr(bent, name)[rows] for name in Bent.__dataclass_fields__))
-            done = self._bend(body, [steps[i] for i in curved], part, answers)
+            done = self._bend(body, [steps[i] for i in curved], bent.rows(rows), answers)
             out |= dict(zip(curved, done, strict=True))
         return [out[i] for i in range(len(steps))]
+
+    def _answered(
+        self,
+        body: Body,
+        state: WalkerState,
+        step: PlannedStep,
+        request: StepRequest,
+        answer: Answer | None,
+        answers: list[Answer],
+    ) -> WalkerState:
+        """Put the answer to ``request`` on the list, asked for if there is none from a table."""
+        if answer is None:
+            answer = self._ask(body, replace(request, hip_height=_rounded(state)), step)
+        answer.raised_from(state.hip_height)
+        answers.append(answer)
+        return WalkerState(float(answer.curves[-1, 1]) - request.rise, step.duration)
 
     def _ask(self, body: Body, request: StepRequest, step: PlannedStep) -> Answer:
         try:
@@ -197,54 +205,72 @@ class CurvedGenerator:
             name: np.take_along_axis(flat.column(name), pair, axis=1)
             for name in ("pitch", "meta", "bend")
         }
+        sides = np.arange(len(steps))
+        foothold, heading = np.empty((len(steps), 2, 3)), np.empty((len(steps), 2))
+        for k, side in ((0, 1 - bent.stance), (1, bent.stance)):
+            foothold[sides, side] = [(s.origin, s.stance)[k].position for s in steps]
+            heading[sides, side] = bent.heading[:, k]
+        pelvis = flat.column("pelvis")
         for i, (step, answer) in enumerate(zip(steps, answers, strict=True)):
             rows = slice(int(flat.first[i]), int(flat.first[i]) + len(answer.phase))
             curves = StepCurves.trusted(
                 phase=answer.phase,
                 center=center[rows],
                 heading=path.heading[rows],
-                pelvis=flat.column("pelvis")[rows],
+                pelvis=pelvis[rows],
                 ankle=ankle[rows],
                 foot_heading=foot_heading[rows],
                 upper=upper[rows],
                 **{name: values[rows] for name, values in legs.items()},
             )
-            foothold, heading = np.empty((2, 3)), np.empty(2)
-            for foot in (step.stance, step.origin):
-                foothold[foot.side], heading[foot.side] = foot.position, foot.heading
-            reference = ReferenceStep(
-                curves=curves,
-                origin=origin[i],
-                stance=step.stance.side,
-                toe_off=answer.toe_off,
-                foothold=foothold,
-                foothold_heading=heading,
-                target=step.target.position,
-                target_heading=step.target.heading,
+            target = step.target
+            reference = ReferenceStep.trusted(
+                curves,
+                origin[i],
+                step.stance.side,
+                answer.toe_off,
+                foothold[i],
+                heading[i],
+                target.position,
+                target.heading,
             )
-            rise = float(step.target.position[1] - step.stance.position[1])
-            height = float(answer.curves[-1, 1]) - rise
-            end = WalkerState(hip_height=height, duration=step.duration)
+            rise = float(target.position[1] - step.stance.position[1])
+            end = WalkerState(float(answer.curves[-1, 1]) - rise, step.duration)
             out.append(TabledStep(step.duration, end, reference, body, self._ground))
         return out
 
 
-def _request(body: Body, step: PlannedStep, lengths: Float[np.ndarray, "2"]) -> StepRequest:
-    """The underlying 2D step, [KB92a] section 3: as long as the curves beside the footsteps."""
-    following = 0.0
-    if step.following is not None:
-        following = float(np.hypot(*(step.following.middle - step.target.middle)))
+def _requests(
+    body: Body,
+    state: WalkerState,
+    steps: Sequence[PlannedStep],
+    lengths: Float[np.ndarray, "S 2"],
+    strides: int,
+) -> list[StepRequest]:
+    """The underlying 2D steps, [KB92a] section 3: as long as the curves beside the footsteps."""
     least = SHORTEST * body.leg_length
-    previous, length = (round(max(float(v), least), 12) for v in lengths)
-    return StepRequest(
-        side=step.stance.side,
-        previous_length=0.0 if step.kind == "start" else previous,
-        length=0.0 if step.kind == "stop" else length,
-        next_length=0.0 if following < 1e-9 else round(max(following, least), 12),
-        duration=round(step.duration, 12),
-        rise=round(float(step.target.position[1] - step.stance.position[1]), 12),
-        kind=step.kind,
-    )
+    asked = np.round(np.maximum(lengths, least), 12).tolist()
+    last = state.duration
+    out = []
+    for step, (previous, length) in zip(steps, asked, strict=True):
+        following = 0.0
+        if step.following is not None:
+            following = math.dist(step.following.middle, step.target.middle)
+        out.append(
+            StepRequest(
+                side=step.stance.side,
+                previous_length=0.0 if step.kind == "start" else previous,
+                length=0.0 if step.kind == "stop" else length,
+                next_length=0.0 if following < 1e-9 else round(max(following, least), 12),
+                duration=round(step.duration, 12),
+                rise=round(float(step.target.position[1] - step.stance.position[1]), 12),
+                kind=step.kind,
+                previous_duration=None if last is None else round(last, 12),
+                stride=stride_of(step) % strides,
+            )
+        )
+        last = step.duration
+    return out
 
 
 def _steady(lengths: Float[np.ndarray, "S"]) -> float:

@@ -63,9 +63,7 @@ _ARM = ("Shoulder", "UpperArm", "LowerArm", "Hand")
 
 @dataclass(frozen=True)
 class _Ends:
-    """Step length and cadence over the cycle's own, at the ends of the step of each of M samples,
-    and the way between.
-    """
+    """Step length and cadence over the cycle's own at both ends of the step of each sample."""
 
     length: _Pair
     cadence: _Pair

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaitsmith.contact.reference import end_speeds
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -18,11 +20,8 @@ def join_speeds(steps: Sequence[ReferenceStep]) -> list[ReferenceStep]:
     Unequal steps meet with 15-20 % different speeds ([KB92b] erratum D17). Both sides take
     the mean; the change is a cubic over the whole step that moves neither end.
     """
-    speeds = [s.curves.end_speeds for s in steps]
-    out = []
-    for i, step in enumerate(steps):
-        begins, ends = speeds[i]
-        start = 0.5 * (speeds[i - 1][1] - begins) if i > 0 else np.zeros(3)
-        end = 0.5 * (speeds[i + 1][0] - ends) if i + 1 < len(steps) else np.zeros(3)
-        out.append(step.with_(speed_change=(start, end)))
-    return out
+    begins, ends = end_speeds([s.curves for s in steps])
+    start, end = np.zeros_like(begins), np.zeros_like(ends)
+    start[1:] = 0.5 * (ends[:-1] - begins[1:])
+    end[:-1] = 0.5 * (begins[1:] - ends[:-1])
+    return [step.joined(a, b) for step, a, b in zip(steps, start, end, strict=True)]

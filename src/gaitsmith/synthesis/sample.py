@@ -30,8 +30,11 @@ if TYPE_CHECKING:
 
 #: Frames that one motion may have: about 2 GB.
 MOST_FRAMES = 1_000_000
-#: Frames that are posed together: their numbers stay in the processor's cache.
-BLOCK = 2048
+#: Frames that are posed together: their numbers stay in the processor's cache. No power of two,
+#: whose rows would compete for the same places in it.
+BLOCK = 2000
+#: Where the real parts of two unit quaternions are above this, they are in one half-sphere.
+NEAR = 0.7072
 
 
 def sample_walk(
@@ -78,18 +81,22 @@ def _local_rotations(
     poses: Poses, body: Body, skeleton: Skeleton
 ) -> Float[np.ndarray, "joints 4 F"]:
     """Joint to parent, frames last: what is next to each other is worked on together."""
-    out = np.zeros((len(skeleton), 4, len(poses.center)))
-    out[:, 3] = 1.0
+    out = np.empty((len(skeleton), 4, len(poses.center)))
     out[0] = poses.pelvis.T
     legs = local_legs(poses)
     for side, name in enumerate(SIDES):
         for part, turned in legs.items():
             out[skeleton.index(f"{name}{part}")] = turned[:, side].T
-    joints = np.array([skeleton.index(name) for name in upper_joints(body)])
-    upper = poses.upper.swapaxes(0, 1)
-    moves = upper.any(axis=(1, 2))
-    if moves.any():
-        out[joints[moves]] = exp(upper[moves]).swapaxes(1, 2)
+    last = None
+    for i, name in enumerate(upper_joints(body)):
+        here, vector = out[skeleton.index(name)], poses.upper[:, i]
+        if last is not None and np.array_equal(vector, last[0]):
+            here[:] = last[1]  # the joints of a spine share its turn
+        elif vector.any():
+            here[:] = exp(vector).T
+            last = vector, here
+        else:
+            here[:3], here[3] = 0.0, 1.0
     return out
 
 
@@ -97,14 +104,18 @@ def _keep_signs(
     local: Float[np.ndarray, "joints 4 F"], before: Float[np.ndarray, "joints 4"] | None
 ) -> Float[np.ndarray, "joints 4"]:
     """Of q and -q, which are one rotation, the one nearer to the frame before; the last frame."""
-    flip = np.zeros((local.shape[0], local.shape[2]), dtype=np.bool_)
-    products = local[..., 1:] * local[..., :-1]
-    flip[:, 1:] = products[:, 0] + products[:, 1] + products[:, 2] + products[:, 3] < 0.0
+    far = local[:, 3].min(axis=1) < NEAR
     if before is not None:
-        flip[:, 0] = (local[..., 0] * before).sum(-1) < 0.0
-    if flip.any():
-        odd = np.cumsum(flip, axis=1) % 2 == 1
-        np.negative(local, out=local, where=odd[:, None])
+        far |= before[:, 3] < NEAR
+    for joint in np.flatnonzero(far):
+        q = local[joint]
+        flip = np.zeros(q.shape[1], dtype=np.bool_)
+        products = q[:, 1:] * q[:, :-1]
+        flip[1:] = products[0] + products[1] + products[2] + products[3] < 0.0
+        if before is not None:
+            flip[0] = float(q[:, 0] @ before[joint]) < 0.0
+        if flip.any():
+            np.negative(q, out=q, where=np.cumsum(flip) % 2 == 1)
     return np.array(local[..., -1])
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -11,73 +11,59 @@ import numpy as np
 from gaitsmith.contact import ReferenceStep, StepCurves
 from gaitsmith.conventions import UP, ahead, leftward
 from gaitsmith.errors import InvalidInputError
-from gaitsmith.synthesis.overlay import stride_of
+from gaitsmith.synthesis.overlay import overlays, stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
 from gaitsmith.synthesis.upper_body import RuleOverlay
-from gaitsmith.walks.model import SagittalStep, StepRequest, StraightWalk
+from gaitsmith.walks.model import StepRequest
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jaxtyping import Float
+
     from gaitsmith.body.body import Body
     from gaitsmith.ground import Ground
-    from gaitsmith.plan.footsteps import Footstep, PlannedStep
+    from gaitsmith.plan.footsteps import PlannedStep
     from gaitsmith.synthesis.overlay import Overlay, Overlayer
+    from gaitsmith.walks.model import SagittalStep, StraightWalk
 
 #: Footsteps farther than this from one line, meters or radians, are not a straight walk.
 STRAIGHT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class _Line:
-    """The line a step walks along: a point of it, its direction and its left."""
+class _Lines:
+    """The lines that S steps walk along: half way between the lines of left and right feet.
 
-    here: np.ndarray
-    ahead: np.ndarray
-    left: np.ndarray
+    ``along`` and ``aside`` are meters ahead of the stance foot and to the left of the line, of the
+    origin, the stance foot, the target and the footstep that follows it (the target where none
+    does).
+    """
+
+    here: Float[np.ndarray, "S 3"]
+    along: Float[np.ndarray, "S 4"]
+    aside: Float[np.ndarray, "S 4"]
 
     @staticmethod
-    def of(step: PlannedStep) -> _Line:
-        """Half way between the lines of the left and of the right feet."""
-        line = _Line(
-            step.stance.position, ahead(step.stance.direction), leftward(step.stance.direction)
-        )
-        middle = 0.5 * line.aside(step.target)
-        if step.stance.direction != step.target.direction or (
-            abs(line.aside(step.target) - line.aside(step.origin)) > STRAIGHT
-        ):
+    def of(steps: Sequence[PlannedStep]) -> _Lines:
+        """Refuses steps that turn or leave their line."""
+        feet = [(s.origin, s.stance, s.target, s.following or s.target) for s in steps]
+        places = np.array([[foot.position for foot in four] for four in feet])
+        direction = np.array([s.stance.direction for s in steps])
+        away = places - places[:, 1:2]
+        along = (away * ahead(direction)[:, None]).sum(-1)
+        left = leftward(direction)
+        aside = (away * left[:, None]).sum(-1)
+        bent = np.abs(aside[:, 2] - aside[:, 0]) > STRAIGHT
+        bent |= np.array([s.target.direction for s in steps]) != direction
+        if bent.any():
             raise InvalidInputError(
-                f"step {step.index} is not straight: its footsteps turn or leave their line; a "
-                "straight walk needs footsteps of one direction on two parallel lines"
+                f"step {steps[int(bent.argmax())].index} is not straight: its footsteps turn or "
+                "leave their line; a straight walk needs footsteps of one direction on two "
+                "parallel lines"
             )
-        return _Line(line.here + middle * line.left, line.ahead, line.left)
-
-    def along(self, foot: Footstep) -> float:
-        """How far ahead of the stance foot, meters."""
-        return float((foot.position - self.here) @ self.ahead)
-
-    def aside(self, foot: Footstep) -> float:
-        """How far to the left of the line, meters."""
-        return float((foot.position - self.here) @ self.left)
-
-
-def is_straight(step: PlannedStep) -> bool:
-    """Whether :class:`StraightGenerator` walks this step: no turn, two parallel lines, no lean.
-
-    A start or stop must have its feet side by side.
-    """
-    stance, target, origin = step.stance, step.target, step.origin
-    if not (stance.direction == target.direction == origin.direction):
-        return False
-    if stance.lean != (0.0, 0.0) or target.lean != (0.0, 0.0) or origin.lean != (0.0, 0.0):
-        return False
-    if stance.gaze != (0.0, 0.0) or target.gaze != (0.0, 0.0) or origin.gaze != (0.0, 0.0):
-        return False
-    way, left = ahead(stance.direction), leftward(stance.direction)
-    to_target, to_origin = target.position - stance.position, origin.position - stance.position
-    if abs(float((to_target - to_origin) @ left)) > STRAIGHT:
-        return False
-    if step.kind == "start" and abs(float(to_origin @ way)) > STRAIGHT:
-        return False
-    return step.kind != "stop" or abs(float(to_target @ way)) <= STRAIGHT
+        middle = 0.5 * aside[:, 2:3]
+        return _Lines(places[:, 1] + middle * left, along, aside - middle)
 
 
 @dataclass(frozen=True)
@@ -111,70 +97,82 @@ class StraightGenerator:
         self, walk: StraightWalk, ground: Ground, overlay: Overlayer | None = None
     ) -> None:
         self._walk, self._ground, self._overlay = walk, ground, overlay or RuleOverlay()
-        self._drawn = lru_cache(maxsize=512)(self._draw)
+        self._sagittal = lru_cache(maxsize=512)(self._walk.step)
 
     def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
         """See :meth:`gaitsmith.synthesis.step.StepGenerator.prepare`."""
-        line = _Line.of(step)
-        length = line.along(step.target)
-        rise = float(step.target.position[1] - step.stance.position[1])
-        request = StepRequest(
-            side=step.stance.side,
-            previous_length=-line.along(step.origin),
-            length=length,
-            next_length=line.along(step.following) - length if step.following else 0.0,
-            duration=step.duration,
-            rise=rise,
-            hip_height=state.hip_height,
-            kind=step.kind,
-            previous_duration=state.duration,
-            stride=stride_of(step) % self._overlay.strides,
+        return self.prepare_all(body, state, [step])[0]
+
+    def prepare_all(
+        self, body: Body, state: WalkerState, steps: Sequence[PlannedStep]
+    ) -> list[PreparedStep]:
+        """See :meth:`gaitsmith.synthesis.step.BatchGenerator.prepare_all`."""
+        lines = _Lines.of(steps)
+        # to a picometer, so that equal steps are recognized and drawn once
+        along, aside = np.round(lines.along, 12).tolist(), np.round(lines.aside, 12).tolist()
+        ends, asked = [], []
+        for i, step in enumerate(steps):
+            rise = float(step.target.position[1] - step.stance.position[1])
+            request = StepRequest(
+                side=step.stance.side,
+                previous_length=-along[i][0],
+                length=along[i][2],
+                next_length=round(along[i][3] - along[i][2], 12) if step.following else 0.0,
+                duration=round(step.duration, 12),
+                rise=round(rise, 12),
+                hip_height=_rounded(state.hip_height),
+                kind=step.kind,
+                previous_duration=_rounded(state.duration),
+                stride=stride_of(step) % self._overlay.strides,
+            )
+            setting = _Setting(
+                direction=step.stance.direction,
+                aside=(aside[i][1], aside[i][2]),
+                foot_heading=(step.stance.heading, step.target.heading),
+            )
+            sagittal = self._sagittal(body, request)
+            state = WalkerState(float(sagittal.center[-1, 1]) - rise, step.duration)
+            ends.append(state)
+            asked.append((request, setting))
+        drawn = self._drawn(body, asked)
+        return [
+            self._placed(body, step, here, end, *drawn[one])
+            for step, here, end, one in zip(steps, lines.here, ends, asked, strict=True)
+        ]
+
+    def _drawn(
+        self, body: Body, asked: Sequence[tuple[StepRequest, _Setting]]
+    ) -> dict[tuple[StepRequest, _Setting], tuple[float, StepCurves]]:
+        """Toe-off and curves of every step that is asked for, each drawn once."""
+        each = list(dict.fromkeys(asked))
+        sagittal = [self._sagittal(body, request) for request, _ in each]
+        laid = overlays(self._overlay, body, [request for request, _ in each], sagittal)
+        return {
+            one: (step.toe_off, _curves(one[0].side, step, over, one[1]))
+            for one, step, over in zip(each, sagittal, laid, strict=True)
+        }
+
+    def _placed(
+        self,
+        body: Body,
+        step: PlannedStep,
+        here: Float[np.ndarray, "3"],
+        end: WalkerState,
+        toe_off: float,
+        curves: StepCurves,
+    ) -> PreparedStep:
+        stance, target = step.stance, step.target
+        side, foothold, heading = stance.side, np.empty((2, 3)), np.empty(2)
+        foothold[side], foothold[1 - side] = stance.position, step.origin.position
+        heading[side], heading[1 - side] = stance.heading, step.origin.heading
+        reference = ReferenceStep.trusted(
+            curves, here, side, toe_off, foothold, heading, target.position, target.heading
         )
-        setting = _Setting(
-            direction=step.stance.direction,
-            aside=(round(line.aside(step.stance), 12), round(line.aside(step.target), 12)),
-            foot_heading=(step.stance.heading, step.target.heading),
-        )
-        sagittal, curves = self._drawn(body, _rounded(request), setting)
-        stance, swing = step.stance.side, 1 - step.stance.side
-        foothold, heading = np.empty((2, 3)), np.empty(2)
-        foothold[stance], foothold[swing] = step.stance.position, step.origin.position
-        heading[stance], heading[swing] = step.stance.heading, step.origin.heading
-        reference = ReferenceStep(
-            curves=curves,
-            origin=line.here,
-            stance=stance,
-            toe_off=sagittal.toe_off,
-            foothold=foothold,
-            foothold_heading=heading,
-            target=step.target.position,
-            target_heading=step.target.heading,
-        )
-        height = float(sagittal.center[-1, 1]) - rise
-        end = WalkerState(hip_height=height, duration=step.duration)
         return TabledStep(step.duration, end, reference, body, self._ground)
 
-    def _draw(
-        self, body: Body, request: StepRequest, setting: _Setting
-    ) -> tuple[SagittalStep, StepCurves]:
-        sagittal = self._walk.step(body, request)
-        overlay = self._overlay(body, request, sagittal)
-        return sagittal, _curves(request.side, sagittal, overlay, setting)
 
-
-def _rounded(request: StepRequest) -> StepRequest:
-    """Lengths to a picometer, so that equal steps are recognized and drawn once."""
-    height, before = request.hip_height, request.previous_duration
-    return replace(
-        request,
-        previous_length=round(request.previous_length, 12),
-        length=round(request.length, 12),
-        next_length=round(request.next_length, 12),
-        duration=round(request.duration, 12),
-        rise=round(request.rise, 12),
-        hip_height=None if height is None else round(height, 12),
-        previous_duration=None if before is None else round(before, 12),
-    )
+def _rounded(value: float | None) -> float | None:
+    return None if value is None else round(value, 12)
 
 
 def _curves(stance: int, sagittal: SagittalStep, overlay: Overlay, setting: _Setting) -> StepCurves:

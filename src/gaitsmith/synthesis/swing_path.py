@@ -28,12 +28,19 @@ TURNS, SHIFTS = 0.10, 0.02
 
 @dataclass(frozen=True, eq=False)
 class SwingPath:
-    """Plans of S swings: a curve of second degree, and how far it is pushed aside."""
+    """S swings seen from above: where they go by themselves, and how far aside they are pushed.
 
-    curve: PlaneCurves
-    whole: Float[np.ndarray, "S"]
+    Attributes
+    ----------
+    push, away
+        ``(S,)`` meters in the middle of the swing, ``(S, 2)`` to where.
+    plan
+        ``(M, 2)``, ``(M,)`` ankle and heading of the swing foot at every sample, not pushed.
+    """
+
     push: Float[np.ndarray, "S"]
     away: Float[np.ndarray, "S 2"]
+    plan: tuple[Float[np.ndarray, "M 2"], Float[np.ndarray, "M"]]
 
     @staticmethod
     def of(body: Body, bent: Bent, flat: Flat2D) -> SwingPath:
@@ -54,7 +61,9 @@ class SwingPath:
         curve = PlaneCurves.bezier(start, control, end)
         left = np.stack([np.cos(bent.direction[:, 1]), -np.sin(bent.direction[:, 1])], axis=-1)
         away = -bent.sign[:, None] * left
-        path = SwingPath(curve, curve.length(), np.zeros(len(size)), away)
+        whole = curve.length()
+        plan = _planned(curve, whole, bent, flat)
+        path = SwingPath(np.zeros(len(size)), away, plan)
         return path.kept_apart(body, bent, flat)
 
     def kept_apart(self, body: Body, bent: Bent, flat: Flat2D) -> SwingPath:
@@ -79,7 +88,7 @@ class SwingPath:
             return self
         i = flat.step[swinging]
         shape = push_shape(flat.swing[swinging])
-        plain, heading = self._plan(bent, flat, swinging)
+        plain, heading = (values[swinging] for values in self.plan)
         foot = body.foot
 
         def apart(which: np.ndarray, ankle: np.ndarray, facing: np.ndarray) -> np.ndarray:
@@ -116,32 +125,7 @@ class SwingPath:
                 break
             missing = np.where(short > 0.0, short, missing)
             push = np.where(short > 0.0, push + PUSH, push)
-        return SwingPath(self.curve, self.whole, weight * best, self.away)
-
-    def _plan(
-        self, bent: Bent, flat: Flat2D, which: np.ndarray
-    ) -> tuple[Float[np.ndarray, "m 2"], Float[np.ndarray, "m"]]:
-        """Ankles and headings of the swing foot at samples ``which``, not pushed."""
-        i = flat.step[which]
-        ankle = flat.ankle[:, 1, 0]
-        begin, end = ankle[flat.off][i], ankle[flat.last][i]
-        span = end - begin
-        moved = np.abs(span) > 1e-6
-        share = np.where(
-            moved, (ankle[which] - begin) / np.where(moved, span, 1.0), flat.swing[which]
-        )
-        whole = self.whole[i]
-        along = share * whole
-        curve = self.curve.rows(i)
-        u = self.curve.parameter(i, along)
-        tangent = curve.derivative(u)
-        unit = tangent / np.maximum(np.linalg.norm(tangent, axis=-1), 1e-12)[:, None]
-        # the share leaves [0, 1] where the foot draws back before it lands
-        over = np.maximum(along - whole, 0.0) + np.minimum(along, 0.0)
-        plan = curve.at(u) + over[:, None] * unit
-        turned = smoothstep(flat.swing[which])
-        heading = bent.heading[i, 0] + turned * (bent.heading[i, 2] - bent.heading[i, 0])
-        return plan, heading
+        return SwingPath(weight * best, self.away, self.plan)
 
     def read(
         self, bent: Bent, flat: Flat2D
@@ -149,7 +133,7 @@ class SwingPath:
         """World ankles and headings of [left, right]; where a foot bears contact replaces them."""
         every = np.arange(len(flat.step))
         i = flat.step
-        plan, heading = self._plan(bent, flat, every)
+        plan, heading = self.plan
         plan = plan + (self.push[i] * push_shape(flat.swing))[:, None] * self.away[i]
         ankle = np.empty((len(i), 2, 3))
         headings = np.empty((len(i), 2))
@@ -163,6 +147,28 @@ class SwingPath:
         ankle[every, 1 - stance, 1] = flat.ankle[:, 1, 1]
         headings[every, 1 - stance] = heading
         return ankle, headings
+
+
+def _planned(
+    curve: PlaneCurves, whole: Float[np.ndarray, "S"], bent: Bent, flat: Flat2D
+) -> tuple[Float[np.ndarray, "M 2"], Float[np.ndarray, "M"]]:
+    """Ankle and heading of the swing foot, not pushed."""
+    i, ankle = flat.step, flat.ankle[:, 1, 0]
+    begin, end = ankle[flat.off][i], ankle[flat.last][i]
+    span = end - begin
+    moved = np.abs(span) > 1e-6
+    share = np.where(moved, (ankle - begin) / np.where(moved, span, 1.0), flat.swing)
+    whole = whole[i]
+    along = share * whole
+    u = curve.parameter(i, along)
+    own = curve.rows(i)
+    tangent = own.derivative(u)
+    # the share leaves [0, 1] where the foot draws back before it lands
+    over = np.maximum(along - whole, 0.0) + np.minimum(along, 0.0)
+    over /= np.maximum(np.sqrt(tangent[:, 0] ** 2 + tangent[:, 1] ** 2), 1e-12)
+    turned = smoothstep(flat.swing)
+    heading = bent.heading[i, 0] + turned * (bent.heading[i, 2] - bent.heading[i, 0])
+    return own.at(u) + over[:, None] * tangent, heading
 
 
 def push_shape(u: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.body.rig import spine_names
-from gaitsmith.geometry.rotations import about, exp, log, multiply
+from gaitsmith.geometry.rotations import exp, log, multiply, turned_left
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -32,11 +32,10 @@ def bent_upper(
     """``upper`` with the head turned by ``gaze``, the trunk leaning by ``roll``; left positive."""
     if not gaze.any() and not roll.any():
         return upper
-    out = np.array(upper)
+    out = np.array(upper.transpose(1, 2, 0)).transpose(2, 0, 1)  # each column contiguous
     yaw = LARGEST_GAZE * np.tanh(gaze / LARGEST_GAZE)
-    spine = spine_names(body.spine_segments)
-    count = len(spine)
-    turns = np.zeros((len(gaze), 3))
+    count = len(spine_names(body.spine_segments))
+    turns = np.zeros((3, len(gaze))).T
     turns[:, 1] = SPINE * yaw / count
     turns[:, 2] = -roll / count
     first = exp(turns)
@@ -46,5 +45,5 @@ def bent_upper(
     if same:
         out[:, 1:count] = out[:, :1]
     for i, share in ((count, NECK), (count + 1, HEAD)):
-        out[:, i] = log(multiply(about("y", share * yaw), exp(upper[:, i])))
+        out[:, i] = log(turned_left(share * yaw, exp(upper[:, i])))
     return out

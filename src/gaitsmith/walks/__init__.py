@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 from gaitsmith.walks.files import built_in
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
+@cache
 def winter() -> KinematicWalk:
     """The measured prototype of [KB92b]: one step of one person, legs only."""
     return KinematicWalk([built_in("winter_step")])
