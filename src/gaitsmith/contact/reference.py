@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -14,7 +13,6 @@ from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import (
     end_slope_correction,
     hermite,
-    parabola_slopes,
     pchip_slopes,
 )
 
@@ -107,7 +105,7 @@ class StepCurves:
         """
         if np.diff(self.phase).max() <= FINEST * (1.0 + 1e-9):
             return self
-        marks = np.unique([0.0, *(e for e in events if 0.0 < e < 1.0), 1.0])
+        marks = np.array(sorted({0.0, *(e for e in events if 0.0 < e < 1.0), 1.0}))
         pieces = []
         for first, last in pairwise(marks):
             own = self.phase[(self.phase >= first) & (self.phase <= last)]

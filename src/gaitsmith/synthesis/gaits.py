@@ -19,7 +19,6 @@ from gaitsmith.synthesis.cycle_overlay import CycleOverlay
 from gaitsmith.synthesis.upper_body import Manner, RuleOverlay
 from gaitsmith.walks import KinematicWalk, winter
 from gaitsmith.walks.files import built_in
-from gaitsmith.walks.from_cycle import walk_data_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -98,6 +97,8 @@ def _neutral() -> Gait:
 
 def neutral_step() -> WalkData:
     """The legs of ``neutral``, that change with the step length as people's; see the data file."""
+    from gaitsmith.walks.from_cycle import walk_data_of  # late: it ships, nobody fits it again
+
     walk, _ = walk_data_of(neutral_cycle(), subject())
     old = walk.character
     knee, strike, off, meta = old.gains
