@@ -16,14 +16,16 @@ PYTEST := $(PY) -m pytest -n $(JOBS) --doctest-modules tests src
 MADE := $(VENV)/.made
 CORE := $(VENV)/.core
 DEV := $(VENV)/.dev
+NODE := node_modules/.package-lock.json
 
-.PHONY: help venv demo test test-all check bench docs fuzz clean
+.PHONY: help venv demo test test-all clients check bench docs fuzz clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo 'make demo      a 5 m walk into demo/ (installs what the library needs, nothing else)'
 	@echo 'make test      the fast tests and the examples in docstrings: under three minutes'
 	@echo 'make test-all  the slow tests too'
+	@echo 'make clients   our files in the programs of others; needs node and npm, skips without'
 	@echo 'make check     format, lint, types, import contract, docs, index of papers'
 	@echo 'make fuzz      broken files for the readers, SECONDS=60 of them; needs the network for atheris'
 	@echo 'make bench     speed, as ratios within one run'
@@ -65,6 +67,15 @@ test: $(DEV)
 
 test-all: $(DEV)
 	$(PYTEST) -m 'not clients'
+
+clients: $(DEV) $(NODE)
+	$(PY) -m pytest -m clients -rs tests
+
+$(NODE): package.json package-lock.json .npmrc
+	@if command -v node >/dev/null 2>&1 && command -v npm >/dev/null 2>&1; then \
+	  echo 'installing programs of others into node_modules' && \
+	  npm ci --no-audit --no-fund --loglevel=error && touch $@; \
+	else echo 'node or npm is absent: what needs them is skipped'; fi
 
 check: $(DEV)
 	$(PY) -m ruff format --check .

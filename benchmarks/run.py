@@ -89,6 +89,22 @@ def main() -> None:
         f"{1e6 * own / frames:.1f} us against {1e6 * yard / frames:.1f} us a frame",
     )
 
+    turns = np.linspace(0.0, 28.0, 60)
+    curve = np.stack(
+        [
+            6.0 * np.sin(turns) * (1.0 + 0.3 * np.sin(3.0 * turns)),
+            6.0 * np.cos(turns) + 3.0 * turns,
+        ],
+        axis=-1,
+    )
+    bent = gaitsmith.walk(path=curve, fps=120)
+
+    def bent_kinematics() -> None:
+        forward_kinematics(bent.skeleton, bent.root_position, bent.rotations)
+
+    _, _, times = ratio(lambda: gaitsmith.walk(path=curve, fps=120), bent_kinematics)
+    row(f"curved walk, {len(bent)} frames / forward kinematics of the clip", times, 7.0)
+
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "a.bvh"
         table = np.concatenate(
@@ -103,7 +119,7 @@ def main() -> None:
 
     walk = winter()
     body = gaitsmith.body_from(1.6)
-    data = walk.prototypes[0]
+    data, _ = walk.prototypes[0]
     own, _, times = ratio(
         lambda: [generalize(data, body, 0.6, 0.65) for _ in range(200)], kinematics
     )

@@ -14,10 +14,47 @@ import numpy as np
 import gaitsmith
 from gaitsmith.motion.kinematics import joint_positions
 from gaitsmith.viz import contact_sheet, gif
+from gaitsmith.viz.canvas import Area, Canvas
+from gaitsmith.viz.figures import figure_row
+from gaitsmith.viz.tracks import stride_frames, tracks_of
 
 TARGET = Path(__file__).parent.parent / "docs/pictures"
 BODIES = {"adult": 1.75, "child": 1.2}
 RATIOS = {"short": 0.5, "usual": 0.85, "long": 1.0}
+
+#: Heights and speeds (m/s, of the middle one; the others at the same Froude number).
+PEOPLE = (1.2, 1.75, 2.05)
+SPEEDS = {"slow": 0.75, "usual": 1.3, "fast": 1.75}
+
+
+def montage(path: Path, view: str) -> None:
+    """`neutral` on three bodies (rows) at three speeds (columns), a stride each."""
+    wide, high, figures = 500, 178, 6
+    canvas = Canvas(3 * wide + 40, 3 * high + 40, fine=2)
+    for row, height in enumerate(PEOPLE):
+        leg = gaitsmith.body_from(height).leg_length
+        share = np.sqrt(leg / gaitsmith.body_from(PEOPLE[1]).leg_length)
+        for column, (word, speed) in enumerate(SPEEDS.items()):
+            motion = gaitsmith.walk(distance=8 * leg, body=height, speed=speed * share)
+            tracks = tracks_of(motion)
+            frames, _ = stride_frames(motion, figures)
+            x, y = 20 + column * wide, 34 + row * high
+            figure_row(canvas, tracks, Area(x, y, x + wide - 20, y + high - 12), frames, view)
+            canvas.text(x, y - 6, f"{height:g} m, {word}, {speed * share:.2f} m/s", size=12)
+    canvas.save(path)
+
+
+def ends(path: Path) -> None:
+    """The first and the last two seconds of `neutral`, from the right and from ahead."""
+    motion = gaitsmith.walk(distance=5.0)
+    tracks, count = tracks_of(motion), len(motion)
+    steps = np.arange(0, 100, 11)
+    canvas = Canvas(1200, 900, fine=2)
+    for row, frames in enumerate((steps, count - 1 - steps[::-1])):
+        for line, view in enumerate(("right", "front")):
+            top = 20 + (2 * row + line) * 220
+            figure_row(canvas, tracks, Area(20, top, 1180, top + 205), frames, view)
+    canvas.save(path)
 
 
 def knee_and_hip(motion: gaitsmith.Motion) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -86,6 +123,9 @@ def main() -> None:
             contact_sheet(motion, TARGET / f"walk-{name}-{word}.png", width=1100)
     contact_sheet(gaitsmith.walk(distance=5.0), TARGET / "walk.png", width=1100)
     gif(gaitsmith.walk(distance=4.0), TARGET / "walk.gif", width=360, fps=12.5)
+    montage(TARGET / "neutral-side.png", "right")
+    montage(TARGET / "neutral-front.png", "front")
+    ends(TARGET / "neutral-ends.png")
     joint_curves(TARGET / "joint-curves.png")
 
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from gaitsmith.ground import GROUNDS, Ground
     from gaitsmith.io import load
     from gaitsmith.learning import learn
+    from gaitsmith.measuring import measure
     from gaitsmith.motion.motion import Labels, Markers, Motion
     from gaitsmith.motion.skeleton import Skeleton
     from gaitsmith.pipeline import regenerate, save, save_all, walk
@@ -54,6 +55,7 @@ _HOMES = {
     "load": "io",
     "Manner": "synthesis.upper_body",
     "Markers": "motion.motion",
+    "measure": "measuring",
     "Motion": "motion.motion",
     "regenerate": "pipeline",
     "save": "pipeline",
@@ -84,6 +86,7 @@ __all__ = [
     "load",
     "Manner",
     "Markers",
+    "measure",
     "Motion",
     "regenerate",
     "save",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-import itertools
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -156,7 +156,7 @@ def gait_from(
         elif path.suffix:
             raise UnknownFormatError(path.suffix, (SUFFIX, *CLIPS), verb="take a gait from")
         else:
-            raise UnknownNameError("gait (name, .gait.json file or clip)", text, GAITS)
+            raise UnknownNameError("gait", text, GAITS)
     return learned(spec, manner), gait_to_dict(spec)
 
 
@@ -195,7 +195,7 @@ def read_events(path: str | Path) -> list[Stance]:
             times = [float(cell) for cell in row[1:]]
         except ValueError as error:
             raise FileFormatError(path, str(error), line=line) from None
-        good = len(times) == len(EVENTS) and all(a <= b for a, b in itertools.pairwise(times))
+        good = len(times) == len(EVENTS) and all(a <= b for a, b in pairwise(times))
         if side not in SIDES or not good or not all(-1e6 < t < 1e6 for t in times):
             raise FileFormatError(
                 path,
@@ -203,7 +203,7 @@ def read_events(path: str | Path) -> list[Stance]:
                 f"flat, heel off, toe-off; got {','.join(row)}",
                 line=line,
             )
-        out.append(Stance(SIDES.index(side), *times))
+        out.append(Stance(SIDES.index(side), times[0], times[1], times[2], times[3]))
     if not out:
         raise FileFormatError(path, "no stances")
     return out

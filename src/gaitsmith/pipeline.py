@@ -17,11 +17,16 @@ from gaitsmith.body.files import body_from_dict, body_to_dict
 from gaitsmith.errors import GaitsmithWarning, InvalidInputError
 from gaitsmith.ground import GROUNDS
 from gaitsmith.learning import body_of, gait_from
+from gaitsmith.plan.follow import curve_share, follow
+from gaitsmith.plan.given import GivenSteps, plan_given
+from gaitsmith.plan.lengths import Stance
 from gaitsmith.plan.pace import UNUSUAL_FROUDE, Pace, choose_pace, froude
-from gaitsmith.plan.straight import Stance, plan_straight
+from gaitsmith.plan.paths import Path as WalkPath
+from gaitsmith.plan.rhythm import Rhythm
+from gaitsmith.plan.where import read_where
+from gaitsmith.synthesis.curved import BANKINGS, CurvedGenerator
 from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
-from gaitsmith.synthesis.straight import StraightGenerator
 from gaitsmith.synthesis.upper_body import Manner
 from gaitsmith.walks.generalize import LONG_STEP, check_step_length
 
@@ -30,8 +35,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from gaitsmith.body.body import Body
+    from gaitsmith.ground import Ground
     from gaitsmith.motion.motion import Motion
     from gaitsmith.plan.footsteps import StepPlan
+    from gaitsmith.plan.where import PathLike, StepsLike
     from gaitsmith.synthesis.gaits import Habits
     from gaitsmith.walks.learned import LearnedGait
 
@@ -67,7 +74,9 @@ WRITERS: dict[str, io.Writer] = {
 
 def walk(
     *,
-    distance: float,
+    distance: float | None = None,
+    path: PathLike | None = None,
+    steps: StepsLike | None = None,
     body: str | float | Path | Body = 1.75,
     gait: str | Path | LearnedGait | dict[str, Any] = "neutral",
     step_length: float | None = None,
@@ -78,15 +87,26 @@ def walk(
     step_width: float | None = None,
     toe_out: float | tuple[float, float] | None = None,
     manner: Manner | None = None,
+    banking: str = "body",
+    variation: float = 0.0,
     fps: float = 60.0,
     seed: int = 0,
 ) -> Motion:
-    """A person who walks straight ahead, along +Z from the origin, on level ground.
+    """A person who walks a distance, along a path or on given footsteps, on level ground.
 
     Parameters
     ----------
     distance
-        Meters from the first to the last point of the path.
+        Meters straight ahead, along +Z from the origin. One of ``distance``, ``path`` and
+        ``steps`` says where to walk.
+    path
+        A smooth curve through points ``(x, z)``: a sequence of them, text ``"0,0 0,4 2,7"``, a
+        CSV file, or a :class:`~gaitsmith.plan.paths.Path`.
+    steps
+        Footsteps to land on exactly: a CSV file ``side,x,z,heading_deg[,y][,time]``, a sequence
+        of mappings with these keys, or a :class:`~gaitsmith.plan.footsteps.StepPlan`. The
+        person starts standing on the first two and ends standing on the last two; ``start``,
+        ``stop``, ``step_width`` and ``toe_out`` do not apply.
     body
         Height in meters, name of a built-in body, ``.toml`` file of measures, a clip (whose
         rig has the lengths), or a Body.
@@ -109,10 +129,16 @@ def walk(
     manner
         Sizes of the rules above the legs of a gait that has no upper body of its own
         (``winter``); ``Manner(pelvis=False)`` switches a layer off.
+    banking
+        How the body leans into curves: ``"body"`` (from the feet, the trunk upright, as people
+        do), ``"trunk"`` (the trunk alone, as [KB92a]) or ``"none"``.
     fps
         Frames per second; frame ``i`` is at ``i / fps`` seconds.
+    variation
+        Natural variation from step to step along a path: 0 none, 1 as people vary; speed drifts
+        slowly, step widths vary at once. See :mod:`gaitsmith.plan.rhythm`.
     seed
-        Part of the recipe. This walk has no randomness: it changes nothing yet.
+        Of the variation.
 
     Returns
     -------
@@ -138,7 +164,7 @@ def walk(
     np.float64(3.0)
     """
     who = body_of(body)
-    distance = positive("distance", distance, "meters")
+    where, said = read_where(distance, path, steps)
     fps = positive("fps", fps, "frames per second")
     if not SLOWEST_FPS <= fps <= FASTEST_FPS:
         raise InvalidInputError(
@@ -148,6 +174,7 @@ def walk(
     one_of("stop", stop, ("stand", "walk"))
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InvalidInputError(f"seed must be a whole number, 0 or more, got {seed!r}")
+    one_of("banking", banking, BANKINGS)
     manner = manner or Manner()
     style, named = gait_from(gait, manner)
     stance = _stance(who, step_width, toe_out, style.habits)
@@ -165,7 +192,7 @@ def walk(
     recipe = {
         "gaitsmith": __version__,
         "walk": {
-            "distance": distance,
+            **said,
             "body": body_to_dict(who),
             "gait": named,
             "step_length": step_length,
@@ -176,19 +203,60 @@ def walk(
             "step_width": stance.width,
             "toe_out": stance.toe_out,
             "manner": asdict(manner),
+            **({} if distance is not None else {"banking": banking}),
+            **({"variation": variation} if variation else {}),
             "fps": fps,
             "seed": seed,
         },
     }
     ground = GROUNDS["flat"]()
-    plan = plan_straight(
-        distance=distance, pace=pace, stance=stance, ground=ground, start=start, stop=stop
+    keep = cadence is not None
+    own = style.habits
+    rhythm = Rhythm(
+        lengths=own.lengths if own and step_length is None else (1.0, 1.0),
+        durations=own.durations if own and cadence is None else (1.0, 1.0),
+        variation=variation,
+        seed=seed,
     )
-    if step_length is not None:
-        _warn_of_short_steps(plan, step_length)
-    generator = StraightGenerator(style.walk, ground, style.overlay)
+    outside = banking == "body"
+    plan = _plan(where, who, pace, stance, rhythm, ground, start, stop, keep=keep, outside=outside)
+    if step_length is not None and isinstance(where, WalkPath):
+        _warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
+    generator = CurvedGenerator(style.walk, ground, style.overlay, banking=banking)
     prepared = prepare_walk(plan, generator, who, ground, rest=REST)
     return sample_walk(prepared, who, ground, fps=fps, recipe=recipe)
+
+
+def _plan(
+    where: WalkPath | GivenSteps | StepPlan,
+    body: Body,
+    pace: Pace,
+    stance: Stance,
+    rhythm: Rhythm,
+    ground: Ground,
+    start: str,
+    stop: str,
+    *,
+    keep: bool,
+    outside: bool,
+) -> StepPlan:
+    """Footsteps along a path, or those that were given."""
+    if isinstance(where, WalkPath):
+        return follow(
+            where,
+            pace=pace,
+            stance=stance,
+            ground=ground,
+            body=body if outside else None,
+            start=start,
+            stop=stop,
+            keep_cadence=keep,
+            rhythm=rhythm,
+            stature=body.height,
+        )
+    if isinstance(where, GivenSteps):
+        return plan_given(where, body=body, pace=pace, ground=ground)
+    return where
 
 
 def _own_pace(body: Body, habits: Habits) -> Pace:
@@ -268,14 +336,19 @@ def _warn_of_unusual(body: Body, step_length: float, speed: float) -> None:
         )
 
 
-def _warn_of_short_steps(plan: StepPlan, step_length: float) -> None:
-    along = plan.position[2:, [0, 2]] - plan.position[1:-1, [0, 2]]
-    way = np.stack([np.sin(plan.direction[2:]), np.cos(plan.direction[2:])], axis=-1)
-    longest = float((along * way).sum(-1).max())
+def _warn_of_short_steps(plan: StepPlan, step_length: float, share: float) -> None:
+    longest = float(plan.step_lengths[1:].max())
     if longest < step_length - 1e-6:
         warnings.warn(
             f"the way is too short for a full step of {step_length:.3f} m; the longest is "
             f"{longest:.3f} m",
+            GaitsmithWarning,
+            stacklevel=3,
+        )
+    if share < 1.0 - 1e-6:
+        warnings.warn(
+            f"curves shorten steps of {step_length:.3f} m to as little as "
+            f"{share * step_length:.3f} m",
             GaitsmithWarning,
             stacklevel=3,
         )

@@ -22,7 +22,7 @@ class TestAWalkOfTwoMeasuredSteps(StraightWalkContract):
 
     @pytest.fixture
     def walk(self):
-        [measured] = the_walk().prototypes
+        [(measured, _)] = the_walk().prototypes
         shorter = scale_step_length(measured, 0.6)
         character = shorter.character
         own = character.__class__(

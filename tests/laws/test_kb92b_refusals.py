@@ -157,7 +157,7 @@ def test_a_hip_height_that_is_none_does_not_get_through():
     [
         ("ratio", 0.0, "ratio must be a positive number"),
         ("knee", float("nan"), "knee must be a positive number"),
-        ("strike_pitch", -0.1, "strike_pitch must be a positive number"),
+        ("strike_pitch", 0.0, "strike_pitch must not be 0"),
         ("kappa", 1.0, "kappa must be between 0 and 1, got 1.0"),
         ("gains", (0.4, 0.3, 0.3, 0.3), r"the first in \[0, 0.3\], got \(0.4"),
         ("gains", (0.1, 0.3, 0.3), "gains must be four numbers"),

@@ -14,7 +14,14 @@ from step_generator import turn
 from gaitsmith.body.sole import roll
 from gaitsmith.contact.foothold import footholds, sole_in_air
 from gaitsmith.contact.plan import plan_contact
-from gaitsmith.contact.reach import REACH, REAR_REACH, drawn_near, lowering, raised_heel
+from gaitsmith.contact.reach import (
+    REACH,
+    REAR_REACH,
+    SWING_REACH,
+    drawn_near,
+    lowering,
+    raised_heel,
+)
 from gaitsmith.errors import InvalidInputError, LegReachError
 from gaitsmith.ground import Flat
 
@@ -170,7 +177,7 @@ def test_an_ankle_is_drawn_near_along_the_leg():
     ankle = np.array([[0.0, -0.9 * LEG, 0.0], [0.0, -1.2 * LEG, 0.0], [0.0, -1.2 * LEG, 0.0]])
     near = drawn_near(hip, ankle, np.array([1.0, 1.0, 0.0]), BODY)
     np.testing.assert_allclose(near[0], ankle[0], atol=1e-6)  # out of the soft limit's way
-    assert np.linalg.norm(near[1]) == pytest.approx(REACH * LEG, abs=1e-9)
+    assert np.linalg.norm(near[1]) == pytest.approx(SWING_REACH * LEG, abs=1e-9)
     np.testing.assert_array_equal(near[2], ankle[2])
     assert np.abs(near[:, [0, 2]]).max() == 0.0
 

@@ -146,6 +146,25 @@ def test_motions_change_format(walk, tmp_path):
         convert(source, tmp_path / "b.bvh", unit="cm")
 
 
+@pytest.mark.parametrize("suffix", [".png", ".gif", ".glb"])
+def test_what_was_read_becomes_a_picture(monkeypatch, capsys, walk, tmp_path, suffix):
+    source = io.save(walk.with_(**thinned(walk)), tmp_path / "a.bvh")
+    code, out, _ = run(monkeypatch, capsys, source, tmp_path / f"b{suffix}")
+    assert code == 0, out
+    assert (tmp_path / f"b{suffix}").stat().st_size > 10_000
+
+
+def thinned(walk):
+    """A few frames: pictures of them are made soon."""
+    few = slice(0, 8)
+    return {
+        "root_position": walk.root_position[few],
+        "rotations": walk.rotations[few],
+        "contacts": None,
+        "labels": None,
+    }
+
+
 # --------------------------------------------------------------------------------- command line
 def run(monkeypatch, capsys, *words: object) -> tuple[int, str, str]:
     monkeypatch.setattr(sys, "argv", ["gaitsmith", "convert", *map(str, words)])

@@ -73,10 +73,11 @@ def test_the_rig_does_not_matter(name, clip, found):
     assert other.step_width == pytest.approx(found.step_width, abs=1e-4)
     np.testing.assert_allclose(other.toe_out, found.toe_out, atol=1e-3)
     error = apart(cycle_angles(one), cycle_angles(two))
-    # a rest pose that nobody can take does not tell how the pelvis is tipped
-    nonsense = "nonsense" in name
-    assert np.abs(error[..., 1:]).max() < 0.1
-    assert np.abs(error[..., 0]).max() < (3.0 if nonsense else 0.1)
+    if "nonsense" in name:  # such a rest pose does not tell how the pelvis is tipped
+        tilt = error[..., 0].mean()
+        assert abs(tilt) < 8.0
+        error[..., 0] -= tilt
+    assert np.abs(error).max() < 0.1
 
 
 def test_a_rig_seen_in_a_mirror(clip, found):

@@ -1,4 +1,4 @@
-"""Pictures: the mannequin's meshes, and that sheets and animations are what they claim."""
+"""Pictures: the figure that is drawn, and that sheets and animations are what they claim."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from gaitsmith.motion.kinematics import forward_kinematics
 from gaitsmith.motion.motion import Labels, Motion
 from gaitsmith.motion.skeleton import Skeleton
 from gaitsmith.skin.build import build_skin
-from gaitsmith.skin.mannequin import build_mannequin
 from gaitsmith.viz import contact_sheet, gif
 from gaitsmith.viz.canvas import nice_step
 from gaitsmith.viz.render import camera, draw_figure, rasterize
@@ -92,79 +91,39 @@ def at_rest(skeleton: Skeleton) -> tuple[np.ndarray, np.ndarray]:
     return positions[0], world[0]
 
 
-@pytest.mark.parametrize("spine", [3, 17])
-def test_every_part_is_closed_and_faces_outward(spine):
-    for part in build_mannequin(person(spine)).parts:
-        assert np.isfinite(part.vertices).all()
-        edges = np.concatenate([part.faces[:, k] for k in ([0, 1], [1, 2], [2, 0])])
-        directed = set(map(tuple, edges.tolist()))
-        assert len(directed) == len(edges), part.name
-        assert all((b, a) in directed for a, b in directed), part.name
-        a, b, c = (part.vertices[part.faces[:, k]] for k in range(3))
-        assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0.0, part.name
+def shown(figure, positions, world, view: str, size: int = 200) -> np.ndarray:
+    """Which pixels the figure covers, seen from ``view`` at 100 pixels a meter."""
+    image = Image.new("RGB", (size, size), (0, 0, 0))
+    seen = camera(view, heading=0.0, target=np.zeros(3), center=(size / 2, 190), scale=100.0)
+    draw_figure(image, figure, positions, world, seen)
+    return np.asarray(image).max(axis=2) > 0
 
 
-@pytest.mark.parametrize("scale", [0.6, 1.0, 1.2])
-def test_figure_is_as_tall_as_its_skeleton_says(scale):
-    skeleton = person(scale=scale)
-    figure = build_mannequin(skeleton)
-    vertices, normals = figure.pose(*at_rest(skeleton))
-    head = skeleton.rest_positions()[skeleton.index("head"), 1]
-    assert vertices[:, 1].min() == pytest.approx(0.0, abs=1e-12)
-    assert vertices[:, 1].max() == pytest.approx(head / 0.91, rel=0.01)
-    assert figure.stature == pytest.approx(head / 0.91, rel=1e-9)
-    np.testing.assert_allclose(np.linalg.norm(normals, axis=-1), 1.0, atol=1e-9)
-
-
-def test_shoes_stand_on_the_sole_points():
+def test_silhouette_is_that_of_the_body():
+    """As tall as the stature, as wide as the arms at rest; the two sides in their colours."""
     skeleton = person()
-    parts = {part.name: part for part in build_mannequin(skeleton).parts}
-    for side, word in enumerate(SIDES):
-        heel, ball, tip = skeleton.soles[side]
-        rear, toes = parts[f"{word}FootSole"].vertices, parts[f"{word}ToesSole"].vertices
-        assert rear[:, 1].min() == pytest.approx(heel[1], abs=1e-12)
-        assert toes[:, 1].min() == pytest.approx(tip[1], abs=1e-12)
-        for point, mesh in ((heel, rear), (ball, rear), (tip, toes)):
-            assert np.linalg.norm(mesh - point, axis=1).min() < 1e-9
-        for name in (f"{word}Foot", f"{word}Toes"):
-            assert parts[name].vertices[:, 1].min() > parts[name + "Sole"].vertices[:, 1].min()
+    figure = build_skin(skeleton)
+    mask = shown(figure, *at_rest(skeleton), "front", 220)
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    assert np.ptp(rows) == pytest.approx(100.0 * figure.stature, abs=2.0)
+    reach = 100.0 * np.ptp(figure.vertices[:, 0])
+    assert np.ptp(columns) == pytest.approx(reach, abs=2.0)
+    assert (mask != mask[:, ::-1]).mean() < 0.01
 
 
-def test_sides_have_different_colours_and_mirrored_shapes():
-    parts = {part.name: part for part in build_mannequin(person()).parts}
-    for bone in ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm"):
-        left, right = parts[f"left{bone}"], parts[f"right{bone}"]
-        assert left.color != right.color
-        mirrored = right.vertices * [-1.0, 1.0, 1.0]
-        np.testing.assert_allclose(
-            np.sort(left.vertices, axis=0), np.sort(mirrored, axis=0), atol=1e-9
-        )
-
-
-def test_skinned_figure_is_drawn_like_the_rigid_one():
-    """The same person in the same place: the two silhouettes are nearly one."""
+def test_hand_moves_on_the_picture_with_its_elbow():
     skeleton = person()
-    seen = camera("front", heading=0.0, target=np.zeros(3), center=(150, 280), scale=150.0)
-    masks = []
-    for figure in (build_mannequin(skeleton), build_skin(skeleton)):
-        image = Image.new("RGB", (300, 300), (255, 255, 255))
-        draw_figure(image, figure, *at_rest(skeleton), seen)
-        masks.append(np.asarray(image).min(axis=2) < 250)
-    assert (masks[0] & masks[1]).sum() > 0.75 * (masks[0] | masks[1]).sum()
-
-
-def test_mannequin_without_some_joints_or_any():
-    skeleton = person()
-    keep = [k for k, n in enumerate(skeleton.names) if "Toes" not in n and "Arm" not in n]
-    keep = [k for k in keep if "Hand" not in skeleton.names[k]]
-    names = tuple(skeleton.names[k] for k in keep)
-    parents = tuple(-1 if k == 0 else keep.index(skeleton.parents[k]) for k in keep)
-    part = Skeleton(names, parents, skeleton.offsets[keep])
-    assert len(build_mannequin(part).parts) > 10
-    with pytest.raises(InvalidInputError, match="humanoid"):
-        build_mannequin(Skeleton(("a", "b"), (-1, 0), np.zeros((2, 3))))
-    with pytest.raises(InvalidInputError, match="detail"):
-        build_mannequin(skeleton, detail=0.0)
+    figure = build_skin(skeleton)
+    turns = np.tile([0.0, 0.0, 0.0, 1.0], (1, len(skeleton), 1))
+    turns[0, skeleton.index("leftLowerArm")] = about("z", np.pi / 2)  # the hand goes up
+    positions, world = forward_kinematics(skeleton, skeleton.offsets[:1], turns)
+    before = shown(figure, *at_rest(skeleton), "front", 220)
+    after = shown(figure, positions[0], world[0], "front", 220)
+    elbow = 110 + round(100.0 * skeleton.rest_positions()[skeleton.index("leftLowerArm"), 0])
+    assert before[:, elbow + 15 :].sum() > 100
+    assert after[:, elbow + 15 :].sum() == 0
+    assert (after & ~before)[:, elbow - 15 : elbow + 15].sum() > 100
+    assert (before[:, :100] == after[:, :100]).all()
 
 
 def test_nearest_face_wins():
@@ -189,7 +148,7 @@ def test_views_show_the_figure(view):
     positions, world = at_rest(skeleton)
     image = Image.new("RGB", (120, 120), (0, 0, 0))
     seen = camera(view, heading=0.0, target=positions[0], center=(60.0, 60.0), scale=50.0)
-    draw_figure(image, build_mannequin(skeleton), positions, world, seen)
+    draw_figure(image, build_skin(skeleton), positions, world, seen)
     pixels = np.asarray(image).astype(int)
     assert (pixels.sum(axis=-1) > 0).sum() > 300
     ahead = seen.project(positions[0] + np.array([0.0, 0.0, 1.0]))
@@ -250,6 +209,25 @@ def test_gif_has_its_frames_and_the_same_bytes(tmp_path):
         assert image.n_frames == 11
         assert image.info["loop"] == 0
         assert image.info["duration"] == 100
+
+
+def chain_of(count: int) -> Motion:
+    """A thing that is no person, waving."""
+    names = tuple(f"j{k}" for k in range(count))
+    skeleton = Skeleton(names, tuple(range(-1, count - 1)), np.tile([0.02, 0.2, 0.0], (count, 1)))
+    rotations = np.tile([0.0, 0.0, 0.0, 1.0], (11, count, 1))
+    rotations[:, -1] = about("x", np.linspace(0.0, 1.0, 11))
+    return Motion(skeleton, np.zeros((11, 3)), rotations, 10.0)
+
+
+def test_what_is_no_person_is_drawn_as_bones(tmp_path):
+    contact_sheet(chain_of(4), tmp_path / "a.png", width=800, fine=1)
+    gif(chain_of(4), tmp_path / "a.gif", width=120, fps=5)
+    tracks = tracks_of(chain_of(4))
+    assert tracks.figure.lasts == (None, None)
+    # four joints, 0.2 m apart, stand 0.6 m high
+    assert tracks.stature == pytest.approx(0.63)
+    assert shown(tracks.figure, tracks.positions[0], tracks.world[0], "front").sum() > 50
 
 
 def test_bad_arguments_are_refused(tmp_path):

@@ -99,7 +99,7 @@ def markers_of(body, ratio: float, side: str) -> tuple[Markers, float, list[floa
     """One stride and a bit of a leg of a walk, its step length and its landings in frames."""
     length = ratio * body.leg_length
     motion = gaitsmith.walk(
-        distance=8.0, body=body, step_length=length, cadence=60.0 / STEP, fps=RATE
+        distance=8.0, body=body, gait="winter", step_length=length, cadence=60.0 / STEP, fps=RATE
     )
     joints, world = motion_kinematics(motion)
     soles = sole_positions(motion.skeleton, joints, world)

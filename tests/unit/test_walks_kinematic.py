@@ -96,7 +96,7 @@ def test_at_a_measured_ratio_the_walk_is_that_measured_step(name, measured):
 def test_the_order_of_the_measured_steps_does_not_matter():
     body, other = BODIES["child"], KinematicWalk([SHORT, LONG])
     length = 0.8 * body.leg_length
-    assert [w.character.ratio for w in BOTH.prototypes] == sorted(
+    assert [w.character.ratio for w, _ in BOTH.prototypes] == sorted(
         w.character.ratio for w in (LONG, SHORT)
     )
     equal(BOTH.walk_data(body, length, length), other.walk_data(body, length, length))

@@ -9,7 +9,7 @@ import numpy as np
 from gaitsmith._checks import positive
 from gaitsmith.conventions import UP
 from gaitsmith.conventions import ahead as heading_vector
-from gaitsmith.geometry.rotations import from_basis, rotate
+from gaitsmith.geometry.rotations import component_major, from_basis, rotate
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -119,11 +119,10 @@ def two_bone_ik(
     )
     thigh_world = _then_about_x(_frame(down, ahead), -lead_sine, lead_cosine)
     shin_world = _then_about_x(thigh_world, sine, cosine)
-    return LegPose(
-        np.stack(thigh_world, axis=-1),
-        np.stack(shin_world, axis=-1),
-        2.0 * np.arctan2(sine, cosine),
-    )
+    thighs, shins = component_major(sine.shape, 4), component_major(sine.shape, 4)
+    for i in range(4):
+        thighs[..., i], shins[..., i] = thigh_world[i], shin_world[i]
+    return LegPose(thighs, shins, 2.0 * np.arctan2(sine, cosine))
 
 
 def knee_position(

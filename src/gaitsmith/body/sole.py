@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from gaitsmith.geometry.rotations import component_major
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -88,7 +90,7 @@ def _rolled(
 
     def point(forward: float, up: float) -> Float[np.ndarray, "*n 2"]:
         x, y = forward - from_forward, up - from_up
-        out = np.empty((*np.broadcast_shapes(c.shape, cm.shape), 2))
+        out = component_major(np.broadcast_shapes(c.shape, cm.shape), 2)
         out[..., 0] = pivot_forward + x * c - y * s
         out[..., 1] = pivot_up + x * s + y * c
         return out

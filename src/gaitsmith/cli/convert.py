@@ -11,7 +11,7 @@ import typer
 
 def convert(
     source: Annotated[Path, typer.Argument(metavar="IN", help="*.bvh, *.amc or *.npz.")],
-    target: Annotated[Path, typer.Argument(metavar="OUT", help="*.bvh, *.csv or *.npz.")],
+    target: Annotated[Path, typer.Argument(metavar="OUT", help="A suffix of `list formats`.")],
     fps: Annotated[float | None, typer.Option(help="Frames per second; else as in IN.")] = None,
     unit: Annotated[
         str | None,
@@ -21,9 +21,10 @@ def convert(
     """Turn a file of motion into another format, another frame rate or a cleaner dialect."""
     from gaitsmith.cli.walk import collected_warnings
     from gaitsmith.io.convert import convert as convert_file
+    from gaitsmith.pipeline import WRITERS
 
     with collected_warnings() as said:
-        written = convert_file(source, target, fps=fps, unit=unit)
+        written = convert_file(source, target, fps=fps, unit=unit, writers=WRITERS)
     for line in said:
         print(f"gaitsmith: warning: {line}", file=sys.stderr)
     print(f"wrote {written}")

@@ -12,6 +12,7 @@ from gaitsmith.cli.convert import convert
 from gaitsmith.cli.demo import demo
 from gaitsmith.cli.learn import learn
 from gaitsmith.cli.listing import listing
+from gaitsmith.cli.measure import measure
 from gaitsmith.cli.walk import walk
 from gaitsmith.errors import GaitsmithError, InvalidInputError
 
@@ -26,6 +27,7 @@ app = typer.Typer(
 app.command()(demo)
 app.command()(walk)
 app.command()(learn)
+app.command()(measure)
 app.command()(convert)
 app.command("list")(listing)
 

@@ -26,7 +26,17 @@ def walk(
             help="File to write; the suffix says what. Repeatable.",
         ),
     ],
-    distance: Annotated[float, typer.Option(help="How far to walk, straight ahead, meters.")],
+    distance: Annotated[
+        float | None, typer.Option(help="How far to walk, straight ahead, meters.")
+    ] = None,
+    path: Annotated[
+        str | None,
+        typer.Option(metavar="POINTS", help='Curve through "x,z x,z ...", or through FILE.csv.'),
+    ] = None,
+    steps: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Footsteps: side,x,z,heading_deg[,y][,time] CSV."),
+    ] = None,
     body: Annotated[
         str, typer.Option(help="Height in meters, a name of `list bodies`, FILE.toml or FILE.bvh.")
     ] = "1.75",
@@ -44,6 +54,9 @@ def walk(
     toe_out: Annotated[
         float | None, typer.Option(help="Degrees that each foot turns out; else the gait's own.")
     ] = None,
+    vary: Annotated[
+        float, typer.Option(help="Natural variation from step to step: 0 none, 1 as people.")
+    ] = 0.0,
     fps: Annotated[float, typer.Option(help="Frames per second.")] = 60.0,
     seed: Annotated[int, typer.Option(help="Seed of what is random; recorded.")] = 0,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -56,6 +69,8 @@ def walk(
     with collected_warnings() as said:
         motion = pipeline.walk(
             distance=distance,
+            path=path,
+            steps=steps,
             body=body,
             gait=gait,
             step_length=step_length,
@@ -65,6 +80,7 @@ def walk(
             stop=stop,
             step_width=step_width,
             toe_out=None if toe_out is None else math.radians(toe_out),
+            variation=vary,
             fps=fps,
             seed=seed,
         )

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaitsmith.body.leg import two_bone_ik
 from gaitsmith.body.sole import rolled_ankle
-from gaitsmith.contact.reference import bearing
-from gaitsmith.conventions import SIDE_SIGN, ahead
+from gaitsmith.contact.reach import SAMPLED_REACH
+from gaitsmith.conventions import UP, ahead
 from gaitsmith.geometry.curves import hermite, parabola_slopes, pchip_slopes, smoothstep
-from gaitsmith.geometry.rotations import about, exp, inverse, multiply, rotate
+from gaitsmith.geometry.rotations import (
+    about,
+    component_major,
+    exp,
+    inverse,
+    left_of,
+    multiply,
+    turned_left,
+)
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float, Int
@@ -21,6 +30,9 @@ if TYPE_CHECKING:
     from gaitsmith.contact.foothold import Footholds
     from gaitsmith.contact.reference import Proposal
 
+#: Radians that are none.
+ROUNDING = 1e-12
+_BOTH = np.array([[0], [1]])
 #: Curves whose sign carries meaning (which part of the sole bears) are read monotonely.
 MONOTONE = ("pitch", "meta", "bend")
 
@@ -118,70 +130,122 @@ class ContactPlan:
 
     def poses(self, walk_phase: Float[np.ndarray, "F"]) -> Poses:
         """Poses at walk phases in [0, steps], in any order; O(1) each."""
-        values = hermite(self.at, self.table, self.slopes, walk_phase)
+        frames = len(walk_phase)
+        rows = hermite(self.at, self.table, self.slopes, walk_phase)
+        # a row a column of the table; below, sides come first and frames are next to each other
+        rows = np.ascontiguousarray(rows.T)
 
-        def read(name: str, *shape: int) -> Float[np.ndarray, "F ..."]:
-            return values[:, self.columns[name]].reshape(len(values), *shape)
+        def read(name: str) -> Float[np.ndarray, "..."]:
+            return rows[self.columns[name]]
 
         step = np.clip(walk_phase.astype(np.int64), 0, self.steps - 1)
         phase = walk_phase - step
-        down = bearing(self.stance, self.toe_off, step, phase)
-        center, heading = read("center", 3), read("heading")
-        pitch, meta, bend = read("pitch", 2), read("meta", 2), read("bend", 2)
+        lifted, stance = phase > self.toe_off[step], self.stance[step]
+        down = ~(lifted & (stance != _BOTH))
+        # a rounding error off level is level: the sign says what of the sole bears
+        pitch, meta, bend = _level(read("pitch")), _level(read("meta")), read("bend")
         bend = np.where(down, np.where(pitch < 0.0, -pitch - meta, 0.0), bend)
-        pelvis = multiply(about("y", heading), exp(read("pelvis", 3)))
+        heading, foot_heading = read("heading")[0], read("foot_heading")
+        pelvis = turned_left(heading, exp(read("pelvis").T))
         ankle, foot = self._feet(
-            step, phase, down, pitch, meta, read("ankle", 2, 3), read("foot_heading", 2)
+            (step, phase, stance),
+            down,
+            pitch,
+            meta,
+            read("ankle").reshape(2, 3, frames).transpose(0, 2, 1),
+            foot_heading,
         )
-        half = (0.5 * self.body.hip_width) * rotate(pelvis, np.array([1.0, 0.0, 0.0]))
-        hip = center[:, None] + SIDE_SIGN[:, None] * half[:, None]
-        # the knee points half way between where the foot and where the pelvis face
-        towards = ahead(read("foot_heading", 2)) + ahead(heading)[:, None]
-        leg = two_bone_ik(hip, ankle, towards, thigh=self.body.thigh, shin=self.body.shin)
+        center, side = read("center").T, 0.5 * self.body.hip_width * left_of(pelvis)
+        hip = component_major((2, frames), 3)
+        np.add(center, side, out=hip[0])
+        np.subtract(center, side, out=hip[1])
         # a walk that ends with a heel strike ends with that heel on the ground
-        touching = down | (phase >= 1.0)[:, None]
+        touching = down | (phase >= 1.0)
+        center = center - self._too_high(hip, ankle, touching)
+        # the knee points half way between where the foot and where the pelvis face
+        towards = ahead(foot_heading) + ahead(heading)
+        leg = two_bone_ik(hip, ankle, towards, thigh=self.body.thigh, shin=self.body.shin)
         toes = touching & (pitch <= 0.0)
         # where the toes bend above the sole, the ball's sole point moves as soon as they bend
         ball = toes & (meta == 0.0)
         if self.body.foot.toe_joint_height > 0.0:
             ball &= pitch == 0.0
         contacts = np.stack([touching & (pitch >= 0.0), ball, toes], axis=-1)
+        upper = read("upper").reshape(self.upper_joints, 3, frames)
         return Poses(
             center=center,
             heading=heading,
             pelvis=pelvis,
-            thigh=leg.thigh,
-            shin=leg.shin,
-            foot=foot,
-            bend=bend,
-            knee=leg.flexion,
-            upper=read("upper", self.upper_joints, 3),
-            contacts=contacts,
+            thigh=leg.thigh.swapaxes(0, 1),
+            shin=leg.shin.swapaxes(0, 1),
+            foot=foot.swapaxes(0, 1),
+            bend=bend.T,
+            knee=leg.flexion.T,
+            upper=upper.transpose(2, 0, 1),
+            contacts=contacts.swapaxes(0, 1),
         )
+
+    def _too_high(
+        self,
+        hip: Float[np.ndarray, "2 F 3"],
+        ankle: Float[np.ndarray, "2 F 3"],
+        touching: Bool[np.ndarray, "2 F"],
+    ) -> Float[np.ndarray, "F 3"] | float:
+        """How far bearing legs are out of reach, which the hips come down by; moves ``hip``.
+
+        Planning keeps legs in reach on its nodes; between them a curve may stray by tenths of
+        a millimeter, which are degrees of a nearly straight knee.
+        """
+        limit = SAMPLED_REACH * self.body.leg_length
+        line = hip - ankle
+        square = line[..., 0] ** 2 + line[..., 1] ** 2 + line[..., 2] ** 2
+        far = touching & (square > limit**2)
+        if not far.any():
+            return 0.0
+        across = line[..., 0] ** 2 + line[..., 2] ** 2
+        allowed = np.sqrt(np.maximum(limit**2 - across, 0.0))
+        down_by = np.where(far, line[..., 1] - allowed, 0.0).max(axis=0)
+        hip[..., 1] -= down_by
+        return down_by[:, None] * UP
+
+    @cached_property
+    def _stands(self) -> tuple[Float[np.ndarray, "2 3 S"], ...]:
+        """Position, forward, normal and tilt of the footholds, steps last."""
+        fields = (self.stands.position, self.stands.forward, self.stands.normal, self.stands.tilt)
+        return tuple(np.ascontiguousarray(f.transpose(1, 2, 0)) for f in fields)
 
     def _feet(
         self,
-        step: Int[np.ndarray, "F"],
-        phase: Float[np.ndarray, "F"],
-        down: Bool[np.ndarray, "F 2"],
-        pitch: Float[np.ndarray, "F 2"],
-        meta: Float[np.ndarray, "F 2"],
-        ankle: Float[np.ndarray, "F 2 3"],
-        heading: Float[np.ndarray, "F 2"],
-    ) -> tuple[Float[np.ndarray, "F 2 3"], Float[np.ndarray, "F 2 4"]]:
+        when: tuple[Int[np.ndarray, "F"], Float[np.ndarray, "F"], Int[np.ndarray, "F"]],
+        down: Bool[np.ndarray, "2 F"],
+        pitch: Float[np.ndarray, "2 F"],
+        meta: Float[np.ndarray, "2 F"],
+        ankle: Float[np.ndarray, "2 F 3"],
+        heading: Float[np.ndarray, "2 F"],
+    ) -> tuple[Float[np.ndarray, "2 F 3"], Float[np.ndarray, "2 F 4"]]:
         """Ankles and world rotations of the feet; exact on their footholds where they bear."""
-        stand = self.stands.at(step)
+        step, phase, stance = when
+        count = 2 if self.level else 4
+        stand = [np.take(f, step, axis=2).transpose(0, 2, 1) for f in self._stands[:count]]
         points = rolled_ankle(self.body.foot, pitch, meta)
-        ankle = np.where(down[..., None], stand.place(points), ankle)
-        level = multiply(about("y", heading), about("x", -pitch))
+        place = stand[0] + points[..., :1] * stand[1]
         if self.level:
-            return ankle, level
+            place[..., 1] += points[..., 1]
+        else:
+            place += points[..., 1:] * stand[2]
+        ankle = np.where(down[..., None], place, ankle)
+        flat = turned_left(heading, about("x", -pitch))
+        if self.level:
+            return ankle, flat
         off = self.toe_off[step]
         share = smoothstep((phase - off) / np.where(off < 1.0, 1.0 - off, 1.0))
-        swing = np.arange(2) != self.stance[step][:, None]
-        share = np.where(swing & ~down, share[:, None], 0.0)[..., None]
-        tilt = (1.0 - share) * stand.tilt + share * self.targets.tilt[step][:, None]
-        return ankle, multiply(exp(tilt), level)
+        share = np.where((stance != _BOTH) & ~down, share, 0.0)[..., None]
+        target = self.targets.tilt[step]
+        return ankle, multiply(exp((1.0 - share) * stand[3] + share * target), flat)
+
+
+def _level(angle: Float[np.ndarray, "2 F"]) -> Float[np.ndarray, "2 F"]:
+    return np.where(np.abs(angle) < ROUNDING, 0.0, angle)
 
 
 def _leave_as_rolled(
@@ -212,9 +276,11 @@ def _leave_as_rolled(
 
 def local_legs(poses: Poses) -> dict[str, Float[np.ndarray, "F 2 4"]]:
     """Local rotations of [left, right] UpperLeg, LowerLeg, Foot and Toes, by name."""
-    return {
-        "UpperLeg": multiply(inverse(poses.pelvis)[:, None], poses.thigh),
-        "LowerLeg": about("x", poses.knee),
-        "Foot": multiply(inverse(poses.shin), poses.foot),
-        "Toes": about("x", -poses.bend),
+    thigh, shin, foot = (q.swapaxes(0, 1) for q in (poses.thigh, poses.shin, poses.foot))
+    turned = {
+        "UpperLeg": multiply(inverse(poses.pelvis), thigh),
+        "LowerLeg": about("x", poses.knee.T),
+        "Foot": multiply(inverse(shin), foot),
+        "Toes": about("x", -poses.bend.T),
     }
+    return {name: q.swapaxes(0, 1) for name, q in turned.items()}

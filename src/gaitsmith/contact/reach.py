@@ -27,6 +27,8 @@ REACH = 0.9988
 REAR_REACH = 0.9993
 #: The same for a swinging foot (3.6 deg), and how softly it is kept, over leg length.
 SWING_REACH, SOFT = 0.9995, 0.0022
+#: What a bearing leg may reach between the nodes that the others hold on (3.5 deg).
+SAMPLED_REACH = 0.99953
 #: Beyond this no pose is made.
 LIMIT = 0.9997
 #: Grid on which the lowering is found, and over what part of a step it is spread.

@@ -56,12 +56,12 @@ class FootPath:
     def resampled(self, at: Float[np.ndarray, "n"]) -> FootPath:
         """The same paths at frames ``at``, fractions of frames too, by the cubic."""
         frames = np.arange(len(self.ankle), dtype=np.float64)
-        return FootPath(
-            *(
-                None if p is None else hermite(frames, p, parabola_slopes(frames, p), at)
-                for p in (self.ankle, self.heel, self.ball, self.tip)
-            )
-        )
+
+        def read(path: Float[np.ndarray, "F 3"]) -> Float[np.ndarray, "n 3"]:
+            return hermite(frames, path, parabola_slopes(frames, path), at)
+
+        tip = None if self.tip is None else read(self.tip)
+        return FootPath(read(self.ankle), read(self.heel), read(self.ball), tip)
 
 
 @dataclass(frozen=True)

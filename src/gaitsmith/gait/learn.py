@@ -108,12 +108,17 @@ def learn_cycle(
     strides, last = 1, best.last
     gap = gap_between(clip, best.first, best.last, _ARMS)
     if gap > _ARMS_GAP:
-        later = next((s for s in spans if s.first is best.last), None)
-        if later is None or gap_between(clip, best.first, later.last, _ARMS) > 0.6 * gap:
-            notes.append(f"the arms of the stride's ends are {np.degrees(gap):.0f} deg apart")
-        else:
-            strides, last = 2, later.last
+        twice = {
+            gap_between(clip, one.first, two.last, _ARMS): (one, two.last)
+            for one in spans
+            for two in spans
+            if two.first is one.last
+        }
+        if twice and min(twice) < 0.6 * gap:
+            strides, (best, last) = 2, twice[min(twice)]
             notes.append("the arms repeat every two strides: the loop holds two")
+        else:
+            notes.append(f"the arms of the stride's ends are {np.degrees(gap):.0f} deg apart")
     return _learned(clip, best, last, strides, symmetric, notes, source, license)
 
 

@@ -102,9 +102,9 @@ def _body_of(
         "forearm": _both(rig, "LowerArm", "Hand", usual.forearm),
     }
     lengths |= _trunk_of(rig, usual)
-    stacked = foot.ankle_height + sum(
-        lengths.get(k, getattr(usual, k)) for k in ("thigh", "shin", "trunk", "neck", "head")
-    )
+    parts = ("thigh", "shin", "trunk", "neck", "head")
+    all_lengths: dict[str, float] = {k: getattr(usual, k) for k in parts} | lengths
+    stacked = foot.ankle_height + sum(all_lengths[k] for k in parts)
     return replace(usual, name=name, height=stacked, foot=foot, **lengths), floor
 
 

@@ -1,6 +1,7 @@
 """Rotations as unit quaternions ``(x, y, z, w)``, vectorised over any leading axes.
 
-Every function broadcasts its leading axes. SciPy's ``Rotation`` is the oracle of the
+Every function broadcasts its leading axes. Results keep their components apart in memory, each
+contiguous, which is several times faster to compute with. SciPy's ``Rotation`` is the oracle of the
 tests; it is not used here because importing it costs more than a whole walk.
 """
 
@@ -20,13 +21,18 @@ IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 IDENTITY.flags.writeable = False
 
 
+def component_major(shape: tuple[int, ...], components: int) -> Float[np.ndarray, "*n c"]:
+    """An empty ``(*shape, components)`` array whose components lie one after the other."""
+    return np.empty((components, *shape)).transpose(*range(1, len(shape) + 1), 0)
+
+
 def multiply(
     a: Float[np.ndarray, "*n 4"], b: Float[np.ndarray, "*n 4"]
 ) -> Float[np.ndarray, "*n 4"]:
     """Compose rotations: ``b`` first, then ``a``."""
     ax, ay, az, aw = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
     bx, by, bz, bw = b[..., 0], b[..., 1], b[..., 2], b[..., 3]
-    out = np.empty((*np.broadcast_shapes(a.shape, b.shape)[:-1], 4))
+    out = component_major(np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 4)
     out[..., 0] = aw * bx + ax * bw + ay * bz - az * by
     out[..., 1] = aw * by - ax * bz + ay * bw + az * bx
     out[..., 2] = aw * bz + ax * by - ay * bx + az * bw
@@ -36,7 +42,10 @@ def multiply(
 
 def inverse(q: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n 4"]:
     """Inverse (conjugate) of unit quaternions."""
-    return q * np.array([-1.0, -1.0, -1.0, 1.0])
+    out = component_major(q.shape[:-1], 4)
+    np.negative(q[..., :3], out=out[..., :3])
+    out[..., 3] = q[..., 3]
+    return out
 
 
 def rotate(q: Float[np.ndarray, "*n 4"], v: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
@@ -46,7 +55,7 @@ def rotate(q: Float[np.ndarray, "*n 4"], v: Float[np.ndarray, "*n 3"]) -> Float[
     tx = 2.0 * (qy * vz - qz * vy)
     ty = 2.0 * (qz * vx - qx * vz)
     tz = 2.0 * (qx * vy - qy * vx)
-    out = np.empty((*np.broadcast_shapes(q.shape[:-1], v.shape[:-1]), 3))
+    out = component_major(np.broadcast_shapes(q.shape[:-1], v.shape[:-1]), 3)
     out[..., 0] = vx + qw * tx + qy * tz - qz * ty
     out[..., 1] = vy + qw * ty + qz * tx - qx * tz
     out[..., 2] = vz + qw * tz + qx * ty - qy * tx
@@ -56,9 +65,35 @@ def rotate(q: Float[np.ndarray, "*n 4"], v: Float[np.ndarray, "*n 3"]) -> Float[
 def about(axis: str, angle: Float[np.ndarray, "*n"] | float) -> Float[np.ndarray, "*n 4"]:
     """Rotations by ``angle`` radians about a coordinate axis, ``"x"``, ``"y"`` or ``"z"``."""
     half = 0.5 * np.asarray(angle, dtype=np.float64)
-    out = np.zeros((*half.shape, 4))
-    out[..., "xyz".index(axis)] = np.sin(half)
+    out = component_major(half.shape, 4)
+    for i in range(3):
+        out[..., i] = np.sin(half) if i == "xyz".index(axis) else 0.0
     out[..., 3] = np.cos(half)
+    return out
+
+
+def turned_left(
+    heading: Float[np.ndarray, "*n"], q: Float[np.ndarray, "*n 4"]
+) -> Float[np.ndarray, "*n 4"]:
+    """``q``, then turned left about +Y by ``heading`` radians."""
+    half = 0.5 * heading
+    s, c = np.sin(half), np.cos(half)
+    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    out = component_major(np.broadcast_shapes(half.shape, x.shape), 4)
+    out[..., 0] = c * x + s * z
+    out[..., 1] = c * y + s * w
+    out[..., 2] = c * z - s * x
+    out[..., 3] = c * w - s * y
+    return out
+
+
+def left_of(q: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n 3"]:
+    """+X, a person's left, turned by ``q``."""
+    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    out = component_major(x.shape, 3)
+    out[..., 0] = 1.0 - 2.0 * (y * y + z * z)
+    out[..., 1] = 2.0 * (x * y + w * z)
+    out[..., 2] = 2.0 * (x * z - w * y)
     return out
 
 
@@ -66,23 +101,48 @@ def exp(vector: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 4"]:
     """Rotation by ``|vector|`` radians about ``vector``; exact at and near zero."""
     x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
     half = 0.5 * np.sqrt(x * x + y * y + z * z)
+    none = half == 0.0
     # sin(h) / 2h, which is 1/2 at zero
-    scale = np.where(half == 0.0, 0.5, 0.5 * np.sin(half) / np.where(half == 0.0, 1.0, half))
-    out = np.empty((*vector.shape[:-1], 4))
-    np.multiply(vector, scale[..., None], out=out[..., :3])
-    np.cos(half, out=out[..., 3])
+    if np.any(none):
+        scale = np.where(none, 0.5, 0.5 * np.sin(half) / np.where(none, 1.0, half))
+    else:
+        scale = 0.5 * np.sin(half) / half
+    out = component_major(vector.shape[:-1], 4)
+    for i, component in enumerate((x, y, z)):
+        out[..., i] = component * scale
+    out[..., 3] = np.cos(half)
     return out
+
+
+def between(a: Float[np.ndarray, "3"], b: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4"]:
+    """Least rotation that turns the direction of ``a`` to that of ``b``.
+
+    None at all where there is no such rotation or many: opposite directions, no length.
+    """
+    size = float(np.linalg.norm(a) * np.linalg.norm(b))
+    axis = np.cross(a, b)
+    sine = float(np.linalg.norm(axis))
+    if sine <= 1e-12 * size:
+        return np.array(IDENTITY)
+    return exp(axis / sine * np.arctan2(sine, float(np.dot(a, b))))
 
 
 def log(q: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n 3"]:
     """Rotation vectors (axis times angle, angle in ``[0, pi]``) of unit quaternions."""
-    q = np.where(q[..., 3:] < 0.0, -q, q)
-    sine = np.linalg.norm(q[..., :3], axis=-1, keepdims=True)
-    angle = 2.0 * np.arctan2(sine, q[..., 3:])
+    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    sine = np.sqrt(x * x + y * y + z * z)
+    # of q and -q, which are one rotation, the one whose angle is not above pi
+    angle = 2.0 * np.arctan2(sine, np.abs(w))
     # angle / sine is 2 at zero, and 2 + sine**2 / 3 beside it
     small = sine < 1e-6
-    scale = np.where(small, 2.0 + sine**2 / 3.0, angle / np.where(small, 1.0, sine))
-    return scale * q[..., :3]
+    scale = angle / np.where(small, 1.0, sine)
+    if small.any():
+        scale = np.where(small, 2.0 + sine**2 / 3.0, scale)
+    scale = np.where(w < 0.0, -scale, scale)
+    out = component_major(sine.shape, 3)
+    for i, component in enumerate((x, y, z)):
+        out[..., i] = scale * component
+    return out
 
 
 def from_basis(

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.errors import InvalidInputError
+from gaitsmith.measures.contacts import gone
+from gaitsmith.measures.legs import knee_flexion
 from gaitsmith.motion.kinematics import motion_kinematics, sole_positions
 
 if TYPE_CHECKING:
@@ -40,26 +42,12 @@ def promises(motion: Motion, ground: Ground) -> dict[str, float]:
     above = soles[..., 1] - ground.height(soles[..., 0], soles[..., 2])
     down = motion.contacts
     return {
-        "slip_mm_max": 1e3 * _slip(soles, down),
+        "slip_mm_max": 1e3 * float(gone(soles, down).max(initial=0.0)),
         "penetration_mm_max": 1e3 * max(0.0, float(-above.min())),
         "float_mm_max": 1e3 * max(0.0, float(above[down].max(initial=0.0))),
         "knee_min_deg": _knee(motion, positions, down),
         **_gait(motion, motion.labels, positions),
     }
-
-
-def _slip(soles: Float[np.ndarray, "F 2 3 3"], down: Bool[np.ndarray, "F 2 3"]) -> float:
-    """Farthest that a sole point gets from where its contact began, meters."""
-    worst = 0.0
-    for side in range(2):
-        for point in range(3):
-            flags = down[:, side, point]
-            starts = flags & ~np.concatenate([[False], flags[:-1]])
-            began = np.maximum.accumulate(np.where(starts, np.arange(len(flags)), 0))
-            path = soles[:, side, point]
-            gone = np.linalg.norm(path - path[began], axis=-1)[flags]
-            worst = max(worst, float(gone.max(initial=0.0)))
-    return worst
 
 
 def _knee(
@@ -72,9 +60,7 @@ def _knee(
             positions[:, motion.skeleton.index(side + part)]
             for part in ("UpperLeg", "LowerLeg", "Foot")
         )
-        thigh, shin = knee - hip, ankle - knee
-        sine = np.linalg.norm(np.cross(thigh, shin), axis=-1)
-        flexion = np.arctan2(sine, (thigh * shin).sum(-1))[down[:, i].any(-1)]
+        flexion = knee_flexion(hip, knee, ankle)[down[:, i].any(-1)]
         least = min(least, float(flexion.min(initial=np.inf)))
     return float(np.degrees(least))
 

@@ -10,6 +10,14 @@ import numpy as np
 from gaitsmith._checks import frozen_array
 from gaitsmith.conventions import SIDES
 from gaitsmith.errors import InvalidInputError
+from gaitsmith.plan.course import (
+    course_change,
+    course_curvature,
+    course_gaze,
+    course_lean,
+    course_lengths,
+    course_middle,
+)
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
@@ -33,6 +41,13 @@ class Footstep:
         Of the walk at this footstep, radians.
     time
         Seconds of landing.
+    middle
+        ``(2,)`` x,z of the point beside it on the line between left and right footsteps.
+    curvature
+        Change of direction per meter of the walk here.
+    lean, gaze
+        Tangent of the lean that the curve asks for here; how far the head looks beyond
+        ``direction``, radians; both left positive. Their changes per meter go with them.
     """
 
     side: int
@@ -40,6 +55,10 @@ class Footstep:
     heading: float
     direction: float
     time: float
+    middle: Float[np.ndarray, "2"]
+    curvature: float = 0.0
+    lean: tuple[float, float] = (0.0, 0.0)
+    gaze: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +94,9 @@ class StepPlan:
         Kind of each of the N - 2 steps.
     path
         ``(P, 2)`` x,z of the path that the plan follows, at most 2 cm apart, or None.
+    middle, lean, gaze
+        ``(N, 2)``, ``(N,)``, ``(N,)``: see :class:`Footstep`. None: what the footsteps say by
+        themselves (:mod:`gaitsmith.plan.course`).
     """
 
     side: Int[np.ndarray, "N"]
@@ -84,6 +106,9 @@ class StepPlan:
     time: Float[np.ndarray, "N"]
     kinds: tuple[StepKind, ...]
     path: Float[np.ndarray, "P 2"] | None = None
+    middle: Float[np.ndarray, "N 2"] | None = None
+    lean: Float[np.ndarray, "N"] | None = None
+    gaze: Float[np.ndarray, "N"] | None = None
 
     def __post_init__(self) -> None:
         """Copy, check and freeze."""
@@ -118,25 +143,67 @@ class StepPlan:
             )
         if self.time[0] != 0.0 or self.time[1] != 0.0 or (np.diff(self.time[1:]) <= 0.0).any():
             raise InvalidInputError("time must be 0 for both initial feet and then rise")
+        self._complete()
+
+    def _complete(self) -> None:
+        """Fill in middle, lean and gaze."""
+        count, middle = len(self.side), self.middle
+        if middle is None:
+            middle = course_middle(self.side, self.position, self.direction)
+        lean, gaze = self.lean, self.gaze
+        if lean is None or gaze is None:
+            curvature = course_curvature(middle, self.direction)
+            lengths = course_lengths(middle, self.direction, curvature)
+            along = np.concatenate([[0.0], np.cumsum(lengths)])
+            if lean is None:
+                lean = course_lean(self.direction, lengths, self.time)
+            if gaze is None:
+                gaze = course_gaze(lambda s: np.interp(s, along, self.direction), along)
+        object.__setattr__(self, "middle", frozen_array("middle", middle, (count, 2)))
+        object.__setattr__(self, "lean", frozen_array("lean", lean, (count,)))
+        object.__setattr__(self, "gaze", frozen_array("gaze", gaze, (count,)))
 
     @property
     def durations(self) -> Float[np.ndarray, "steps"]:
         """``(N - 2,)`` seconds of each step."""
         return np.diff(self.time[1:])
 
+    @property
+    def step_lengths(self) -> Float[np.ndarray, "N-1"]:
+        """``(N - 1,)`` meters from each footstep to the next, along the walk."""
+        assert self.middle is not None
+        curvature = course_curvature(self.middle, self.direction)
+        return course_lengths(self.middle, self.direction, curvature)
+
     def footstep(self, index: int) -> Footstep:
         """The footstep at ``index``."""
-        return Footstep(
-            side=int(self.side[index]),
-            position=self.position[index],
-            heading=float(self.heading[index]),
-            direction=float(self.direction[index]),
-            time=float(self.time[index]),
+        return self.footsteps()[index]
+
+    def footsteps(self) -> list[Footstep]:
+        """All footsteps, in order of landing."""
+        assert self.middle is not None
+        assert self.lean is not None
+        assert self.gaze is not None
+        curvature = course_curvature(self.middle, self.direction)
+        lean = course_change(self.lean, self.middle)
+        gaze = course_change(self.gaze, self.middle)
+        columns = zip(
+            self.side.tolist(),
+            self.position,
+            self.heading.tolist(),
+            self.direction.tolist(),
+            self.time.tolist(),
+            self.middle,
+            curvature.tolist(),
+            zip(self.lean.tolist(), lean.tolist(), strict=True),
+            zip(self.gaze.tolist(), gaze.tolist(), strict=True),
+            strict=True,
         )
+        return [Footstep(*row) for row in columns]
 
     def steps(self) -> list[PlannedStep]:
         """Every step, in order."""
-        feet = [self.footstep(i) for i in range(len(self.side))]
+        feet = self.footsteps()
         stands = {foot.side: foot for foot in feet[:2]}
         came_from: dict[int, Footstep] = {}
         out = []

@@ -78,9 +78,10 @@ def choose_pace(
     """The pace that fits what was asked for.
 
     ``usual`` is the pace of a gait that has one: it then is the preferred one, and its walk
-    ratio is the law's. Nothing: the preferred pace. Speed alone: the walk-ratio law. Step length alone: the
-    cadence goes with the square root of the length, for short steps are quick ones, between
-    the constant cadence and the constant walk ratio. Cadence alone: the preferred step length.
+    ratio is the law's. Nothing: the preferred pace. Speed alone: the walk-ratio law. Step length
+    alone: the cadence goes with the square root of the length, for short steps are quick ones,
+    between the constant cadence and the constant walk ratio. Cadence alone: the preferred step
+    length.
     Two: the third follows. Three: they must agree within 1 %.
 
     Raises

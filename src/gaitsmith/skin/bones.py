@@ -2,37 +2,41 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from gaitsmith.skin.palette import WOOD, WOOD_DARK
-from gaitsmith.skin.parts import Part
-from gaitsmith.skin.shapes import ball, corner_normals, frame_along
+from gaitsmith.skin.shapes import ball, frame_along
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
     from gaitsmith.motion.skeleton import Skeleton
+    from gaitsmith.skin.palette import Color
     from gaitsmith.skin.shapes import Mesh
 
 
-def bone_parts(skeleton: Skeleton, rest: Float[np.ndarray, "joints 3"], size: float) -> list[Part]:
+class Solid(NamedTuple):
+    """A closed piece in the frame of the joint that carries it, meters."""
+
+    joint: int
+    mesh: Mesh
+    color: Color
+
+
+def bone_solids(
+    skeleton: Skeleton, rest: Float[np.ndarray, "joints 3"], size: float
+) -> list[Solid]:
     """A ball at every joint and a spindle to each of its children, for a figure ``size`` m big."""
-    parts: list[Part] = []
-    for joint, name in enumerate(skeleton.names):
-        radius = 0.012 * size
-        knob = ball(np.zeros(3), np.full(3, radius), around=8, rings=5)
-        parts.append(Part(name, joint, *knob, WOOD_DARK, corner_normals(*knob)))
+    knob = ball(np.zeros(3), np.full(3, 0.012 * size), around=8, rings=5)
+    solids = [Solid(joint, knob, WOOD_DARK) for joint in range(len(skeleton))]
     for joint, parent in enumerate(skeleton.parents):
         if parent >= 0:
             bone = rest[joint] - rest[parent]
             if float(np.linalg.norm(bone)) > 0.004 * size:
-                mesh = _spindle(bone, 0.016 * size)
-                parts.append(
-                    Part(skeleton.names[parent], parent, *mesh, WOOD, corner_normals(*mesh))
-                )
-    return parts
+                solids.append(Solid(parent, _spindle(bone, 0.016 * size), WOOD))
+    return solids
 
 
 def _spindle(bone: Float[np.ndarray, "3"], wide: float) -> Mesh:

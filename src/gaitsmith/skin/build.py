@@ -2,33 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaitsmith.conventions import SIDE_SIGN, SIDES
 from gaitsmith.geometry.curves import smoothstep
-from gaitsmith.motion.roles import humanoid_roles
 from gaitsmith.skin import palette
-from gaitsmith.skin.bones import bone_parts
+from gaitsmith.skin.bones import bone_solids
 from gaitsmith.skin.cage import Cage
 from gaitsmith.skin.fit import Fit, fits
+from gaitsmith.skin.hand import fingers
 from gaitsmith.skin.limb_cage import add_arm, add_leg
-from gaitsmith.skin.mannequin import build_mannequin
+from gaitsmith.skin.measures import Measures
 from gaitsmith.skin.mesh import Paint, SkinMesh, split_corners, strongest, vertex_normals
-from gaitsmith.skin.parts import Maker
-from gaitsmith.skin.shapes import ball, corner_normals
+from gaitsmith.skin.shapes import ball, corner_normals, skin
 from gaitsmith.skin.shoe import outsole, upper
+from gaitsmith.skin.t_pose import renamed
 from gaitsmith.skin.torso_cage import add_torso
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from jaxtyping import Float, Int
 
     from gaitsmith.motion.skeleton import Skeleton
-    from gaitsmith.skin.parts import Part
     from gaitsmith.skin.shapes import Mesh
     from gaitsmith.skin.shoe import Last
 
@@ -44,6 +40,20 @@ PAINTS = (
 _WOOD, _PELVIS, _LIMBS, _JOINTS, _SHOES, _OUTSOLE = 0, 1, (2, 3), (4, 5), (6, 7), 8
 # How far from the ball the upper of a shoe begins and ends to bend, over its length.
 _BEND = 0.10
+# Rim of the nose of the standard figure from the bridge counter-clockwise; its tip and, in the
+# head, its back.
+_NOSE_RIM = np.array(
+    [
+        [0.0, 1.642, 0.100],
+        [-0.0085, 1.626, 0.099],
+        [-0.0165, 1.598, 0.102],
+        [0.0, 1.591, 0.106],
+        [0.0165, 1.598, 0.102],
+        [0.0085, 1.626, 0.099],
+    ]
+)
+_NOSE_TIP = np.array([0.0, 1.602, 0.127])
+_NOSE_ENDS = np.stack([[0.0, 1.612, 0.080], _NOSE_TIP])
 
 
 class _Pieces:
@@ -87,19 +97,25 @@ class _Pieces:
         self.add((mesh[0][old], faces), normals, strongest(share[old]), paint)
 
     def mesh(
-        self, paints: tuple[Paint, ...], rest: Float[np.ndarray, "joints 3"], stature: float
+        self,
+        paints: tuple[Paint, ...],
+        rest: Float[np.ndarray, "joints 3"],
+        stature: float,
+        lasts: tuple[Last | None, Last | None],
     ) -> SkinMesh:
-        """All pieces as one mesh."""
+        """All pieces as one mesh, with those of ``paints`` that it has."""
+        used, face_paints = np.unique(np.concatenate(self.paints), return_inverse=True)
         return SkinMesh(
             vertices=np.concatenate(self.vertices),
             normals=np.concatenate(self.normals),
             faces=np.concatenate(self.faces),
             joints=np.concatenate(self.joints),
             weights=np.concatenate(self.weights),
-            paints=paints,
-            face_paints=np.concatenate(self.paints),
+            paints=tuple(paints[k] for k in used.tolist()),
+            face_paints=face_paints,
             rest=rest,
             stature=stature,
+            lasts=lasts,
         )
 
 
@@ -107,37 +123,22 @@ def build_skin(skeleton: Skeleton) -> SkinMesh:
     """A skinned figure around ``skeleton``, in its rest pose.
 
     A person whose rest pose is near the T-pose gets one smooth body of some 9000 triangles,
-    whatever dialect its joints are named in. With VRM humanoid names, one that lacks limbs
-    or stands otherwise gets the rigid pieces of
-    :func:`~gaitsmith.skin.mannequin.build_mannequin`; any other skeleton a slim solid along
-    each bone.
+    whatever dialect its joints are named in; any other skeleton a slim solid along each bone.
+    A person whose rest pose is another one can be had in the T-pose:
+    :func:`gaitsmith.skin.t_pose.in_t_pose`.
     """
-    dressed = _renamed(skeleton)
-    maker = Maker(dressed, 1.0)
-    rest = maker.rest - [0.0, maker.floor, 0.0]
-    if not fits(maker, rest):
-        if any(name in skeleton.names for name in ("leftUpperLeg", "leftUpperArm")):
-            figure = build_mannequin(skeleton)
-            return _rigid(skeleton, figure.parts, rest, figure.stature)
-        rest = maker.rest - [0.0, float(maker.rest[:, 1].min()), 0.0]
-        size = max(float(np.ptp(rest, axis=0).max()), 1e-3)
-        return _rigid(skeleton, bone_parts(skeleton, rest, size), rest, size)
-    fit, pieces = Fit(maker, rest), _Pieces()
+    measures = Measures(renamed(skeleton))
+    rest = measures.rest - [0.0, measures.floor, 0.0]
+    if not fits(measures, rest):
+        return _of_bones(skeleton, measures)
+    fit, pieces = Fit(measures, rest), _Pieces()
     _add_body(pieces, fit)
-    _add_ears(pieces, fit)
-    for side, last in enumerate(maker.lasts):
+    _add_face(pieces, fit)
+    for side, last in enumerate(measures.lasts):
+        _add_fingers(pieces, fit, side)
         if last is not None:
             _add_shoe(pieces, fit, side, last)
-    return pieces.mesh(PAINTS, rest, maker.stature)
-
-
-def _renamed(skeleton: Skeleton) -> Skeleton:
-    """The skeleton with VRM's names for the bones of a human, which joints then have alone."""
-    found = humanoid_roles(skeleton.names, skeleton.parents, need=()).joints
-    names = [f"{name} " if name in found else name for name in skeleton.names]
-    for role, joint in found.items():
-        names[joint] = role
-    return replace(skeleton, names=tuple(names))
+    return pieces.mesh(PAINTS, rest, measures.stature, measures.lasts)
 
 
 def _add_body(pieces: _Pieces, fit: Fit) -> None:
@@ -167,23 +168,36 @@ def _triangles(
     return np.concatenate([first.T, second.T])
 
 
-def _add_ears(pieces: _Pieces, fit: Fit) -> None:
-    unit = fit.head
+def _add_face(pieces: _Pieces, fit: Fit) -> None:
+    """Ears, and a nose that shows where the head looks."""
+    rings = np.stack([_NOSE_RIM, 0.45 * _NOSE_RIM + 0.55 * _NOSE_TIP + [0.0, 0.0, 0.003]])
+    meshes = [skin(fit.trunk(rings.reshape(-1, 3)).reshape(rings.shape), *fit.trunk(_NOSE_ENDS))]
     for sign in SIDE_SIGN.tolist():
         center = fit.trunk(np.array([[sign * 0.0755, 1.628, -0.006]]))[0]
-        mesh = ball(center, np.array([0.010, 0.029, 0.018]) * unit, around=8, rings=4)
+        meshes.append(ball(center, np.array([0.010, 0.029, 0.018]) * fit.head, around=8, rings=4))
+    for mesh in meshes:
         share = np.tile(fit.one("head"), (len(mesh[0]), 1))
         pieces.add_creased(mesh, corner_normals(*mesh, crease=3.0), share, _WOOD)
+
+
+def _add_fingers(pieces: _Pieces, fit: Fit, side: int) -> None:
+    share = fit.one(f"{SIDES[side]}Hand")
+    for points, faces in fingers(fit, side):
+        corners = corner_normals(points, faces, crease=3.0)
+        flat, old, normals = split_corners(faces, corners)
+        carried = strongest(np.tile(share, (len(old), 1)))
+        vertices, normals = fit.sculpt.unpose(points[old], normals, *carried)
+        pieces.add((vertices, flat), normals, carried, _WOOD)
 
 
 def _add_shoe(pieces: _Pieces, fit: Fit, side: int, last: Last) -> None:
     """One shoe: a sole that folds at the ball, an upper that bends over it."""
     word = SIDES[side]
     foot = fit.sculpt.rest[fit.index(f"{word}Foot")]
-    has_toes = f"{word}Toes" in fit.maker.skeleton.names
+    has_toes = f"{word}Toes" in fit.measures.skeleton.names
     for mesh, paint, bend in (
-        (outsole(last, 0.0, 1.0), _OUTSOLE, 0.0),
-        (upper(last, 0.0, 1.0, around=12), _SHOES[side], _BEND * last.length),
+        (outsole(last), _OUTSOLE, 0.0),
+        (upper(last, around=12), _SHOES[side], _BEND * last.length),
     ):
         along = (mesh[0] - last.heel) @ last.axes[0]
         ahead = along - last.ball
@@ -195,20 +209,15 @@ def _add_shoe(pieces: _Pieces, fit: Fit, side: int, last: Last) -> None:
         pieces.add_creased((mesh[0] + foot, mesh[1]), corner_normals(*mesh), share, paint)
 
 
-def _rigid(
-    skeleton: Skeleton,
-    parts: Iterable[Part],
-    rest: Float[np.ndarray, "joints 3"],
-    stature: float,
-) -> SkinMesh:
-    """Pieces that each follow one joint."""
-    pieces, paints = _Pieces(), dict[tuple[int, int, int], int]()
-    for part in parts:
-        paint = paints.setdefault(part.color, len(paints))
-        share = np.zeros((len(part.vertices), len(skeleton)))
-        share[:, part.joint] = 1.0
-        mesh = part.vertices + rest[part.joint], part.faces
-        pieces.add_creased(mesh, part.normals, share, paint)
-    names = {paint.color: paint.name for paint in PAINTS}
-    known = tuple(Paint(names.get(color, f"paint{k}"), color) for color, k in paints.items())
-    return pieces.mesh(known, rest, stature)
+def _of_bones(skeleton: Skeleton, measures: Measures) -> SkinMesh:
+    """A solid along every bone, each rigid with one joint."""
+    rest = measures.rest - [0.0, float(measures.rest[:, 1].min()), 0.0]
+    size = max(float(np.ptp(rest, axis=0).max()), 1e-3)
+    pieces = _Pieces()
+    for joint, mesh, color in bone_solids(skeleton, rest, size):
+        share = np.zeros((len(mesh[0]), len(skeleton)))
+        share[:, joint] = 1.0
+        paint = _WOOD if color == palette.WOOD else _PELVIS
+        moved = mesh[0] + rest[joint], mesh[1]
+        pieces.add_creased(moved, corner_normals(*mesh), share, paint)
+    return pieces.mesh(PAINTS, rest, size, (None, None))

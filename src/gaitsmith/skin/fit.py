@@ -8,25 +8,19 @@ import numpy as np
 
 from gaitsmith.conventions import SIDES
 from gaitsmith.geometry.curves import smoothstep
-from gaitsmith.skin.parts import HEAD_JOINT
+from gaitsmith.skin.measures import HEAD_JOINT
 from gaitsmith.skin.sculpt import Sculpt
-from gaitsmith.skin.trunk import spine_chain
+from gaitsmith.skin.t_pose import NEEDED
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-    from gaitsmith.skin.parts import Maker
+    from gaitsmith.skin.measures import Measures
 
 # Heights of the standard figure, meters: hips, shoulder joint, neck, head, crown; half the
 # distance of its hip joints and of its shoulder joints; length of its hand.
 HIPS, SHOULDER, NECK, HEAD, CROWN = 0.928, 1.432, 1.479, 1.593, 1.750
 HALF_HIPS, HALF_SHOULDERS, HAND = 0.088, 0.192, 0.189
-
-_NEEDED = ("hips", "neck", "head") + tuple(
-    side + joint
-    for side in SIDES
-    for joint in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
-)
 
 
 class Fit:
@@ -40,14 +34,14 @@ class Fit:
         The joints at rest and in the modelling pose.
     """
 
-    def __init__(self, maker: Maker, rest: Float[np.ndarray, "joints 3"]) -> None:
-        self.maker, self.girth = maker, maker.girth
-        self.sculpt = Sculpt(maker.skeleton, rest)
-        self.count = len(maker.skeleton)
+    def __init__(self, measures: Measures, rest: Float[np.ndarray, "joints 3"]) -> None:
+        self.measures, self.girth = measures, measures.girth
+        self.sculpt = Sculpt(measures.skeleton, rest)
+        self.count = len(measures.skeleton)
         g, at = self.girth, self.sculpt.rest
-        crown = maker.crown or (1.0 - HEAD_JOINT) * maker.stature
+        crown = measures.crown or (1.0 - HEAD_JOINT) * measures.stature
         self.head = crown / (CROWN - HEAD)
-        self.chain = [*spine_chain(maker), self.index("neck"), self.index("head")]
+        self.chain = [*measures.spine(), self.index("neck"), self.index("head")]
         arms, legs = ([self.index(side + j) for side in SIDES] for j in ("UpperArm", "UpperLeg"))
         hips = float(at[legs, 1].mean())
         neck, head = (float(at[self.index(name), 1]) for name in ("neck", "head"))
@@ -60,7 +54,7 @@ class Fit:
 
     def index(self, name: str) -> int:
         """Index of the joint called ``name``, which must be there."""
-        return self.maker.skeleton.names.index(name)
+        return self.measures.skeleton.names.index(name)
 
     def one(self, name: str) -> Float[np.ndarray, "joints"]:
         """Weights of what is rigid with the joint called ``name``."""
@@ -117,14 +111,14 @@ class Fit:
         return out
 
 
-def fits(maker: Maker, rest: Float[np.ndarray, "joints 3"]) -> bool:
+def fits(measures: Measures, rest: Float[np.ndarray, "joints 3"]) -> bool:
     """Whether the skeleton is a person near the T-pose, whom the one smooth skin can dress."""
-    names = maker.skeleton.names
-    if any(name not in names for name in _NEEDED) or maker.stature < 0.2:
+    names = measures.skeleton.names
+    if any(name not in names for name in NEEDED) or measures.stature < 0.2:
         return False
-    at = {name: rest[names.index(name)] for name in _NEEDED}
-    size = maker.stature
-    if len(spine_chain(maker)) < 2 or np.abs(rest).max() > 3.0 * size:
+    at = {name: rest[names.index(name)] for name in NEEDED}
+    size = measures.stature
+    if len(measures.spine()) < 2 or np.abs(rest).max() > 3.0 * size:
         return False
     levels = [at[name][1] for name in ("hips", "neck", "head")]
     trunk = levels[1] - max(at[f"{side}UpperLeg"][1] for side in SIDES)

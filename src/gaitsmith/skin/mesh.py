@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
     from gaitsmith.skin.palette import Color
+    from gaitsmith.skin.shoe import Last
 
 #: Joints that a vertex may follow.
 LIMIT = 4
@@ -46,7 +47,10 @@ class SkinMesh:
     rest
         ``(J, 3)`` joints at rest, meters: the mesh is bound to them there, unturned.
     stature
-        Crown above the soles as estimated from the skeleton, meters.
+        Crown above the soles as estimated from the skeleton, meters; of what is no person
+        its greatest extent.
+    lasts
+        The [left, right] shoe, or None where there is none.
     """
 
     vertices: Float[np.ndarray, "vertices 3"]
@@ -58,6 +62,7 @@ class SkinMesh:
     face_paints: Int[np.ndarray, "faces"]
     rest: Float[np.ndarray, "joints 3"]
     stature: float
+    lasts: tuple[Last | None, Last | None] = (None, None)
 
     @cached_property
     def face_colors(self) -> Float[np.ndarray, "faces 3"]:
@@ -71,20 +76,35 @@ class SkinMesh:
 
     def pose(
         self, positions: Float[np.ndarray, "joints 3"], world: Float[np.ndarray, "joints 4"]
-    ) -> tuple[Float[np.ndarray, "vertices 3"], Float[np.ndarray, "faces 3 3"]]:
-        """World vertices (meters) and corner normals in one pose of the skeleton.
+    ) -> tuple[Float[np.ndarray, "vertices 3"], Float[np.ndarray, "vertices 3"]]:
+        """World vertices (meters) and unit normals in one pose of the skeleton.
 
-        Linear blend skinning, as files and game engines do it. Arguments as of
-        :meth:`gaitsmith.skin.mannequin.Mannequin.pose`.
+        Linear blend skinning, as files and game engines do it.
+
+        Parameters
+        ----------
+        positions, world
+            World positions (meters) and rotations of the joints, of one frame of
+            :func:`gaitsmith.motion.kinematics.motion_kinematics`.
         """
         turn = to_matrix(world)
         shift = positions - np.einsum("jab,jb->ja", turn, self.rest)
-        mixed = np.einsum("vk,vkab->vab", self.weights, turn[self.joints])
-        moved = np.einsum("vk,vka->va", self.weights, shift[self.joints])
-        vertices = np.einsum("vab,vb->va", mixed, self.vertices) + moved
-        normals = np.einsum("vab,vb->va", mixed, self.normals)
+        table = np.concatenate([turn.reshape(-1, 9), shift], axis=1)
+        mixed = self._shares[0][:, None] * table[self.joints[:, 0]]
+        for k in range(1, LIMIT):
+            mixed += self._shares[k][:, None] * table[self.joints[:, k]]
+        x, y, z = (mixed[:, k:9:3] for k in range(3))
+        at, up = self.vertices, self.normals
+        vertices = x * at[:, :1] + y * at[:, 1:2] + z * at[:, 2:] + mixed[:, 9:]
+        normals = x * up[:, :1] + y * up[:, 1:2] + z * up[:, 2:]
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-        return vertices, normals[self.faces]
+        return vertices, normals
+
+    @cached_property
+    def _shares(self) -> Float[np.ndarray, "4 vertices"]:
+        """The weights, which add up to 1 in double precision."""
+        weights = self.weights.T.astype(np.float64)
+        return weights / weights.sum(axis=0)
 
 
 def strongest(

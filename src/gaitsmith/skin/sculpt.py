@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.conventions import SIDE_SIGN, SIDES
-from gaitsmith.geometry.rotations import about, exp, multiply, to_matrix
+from gaitsmith.geometry.rotations import about, between, exp, multiply, to_matrix
 from gaitsmith.motion.kinematics import forward_kinematics
 
 if TYPE_CHECKING:
@@ -43,10 +43,10 @@ class Sculpt:
             arm, elbow, hand = (names.index(side + j) for j in ("UpperArm", "LowerArm", "Hand"))
             hang = np.array([sign * np.cos(ARM_DROP), -np.sin(ARM_DROP), 0.0])
             bone = rest[elbow] - rest[arm]
-            local[arm] = _between(bone, hang)
+            local[arm] = between(bone, hang)
             fore = skeleton.offsets[hand]
             # a rest pose that is no T-pose may have its own bend: straighten it first
-            straight = _between(fore, bone)
+            straight = between(fore, bone)
             hinge = np.cross(bone, [0.0, 0.0, 1.0])
             local[elbow] = multiply(exp(ELBOW * hinge / np.linalg.norm(hinge)), straight)
             local[names.index(f"{side}LowerLeg")] = about("x", KNEE)
@@ -67,13 +67,3 @@ class Sculpt:
         back = np.linalg.solve(mixed, np.stack([moved, normals], axis=-1))
         unit = back[..., 1] / np.linalg.norm(back[..., 1], axis=1, keepdims=True)
         return back[..., 0], unit
-
-
-def _between(a: Float[np.ndarray, "3"], b: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4"]:
-    """Shortest rotation that turns the direction of ``a`` to that of ``b``."""
-    a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
-    axis = np.cross(a, b)
-    sine = float(np.linalg.norm(axis))
-    if sine < 1e-12:
-        return np.array([0.0, 0.0, 0.0, 1.0])
-    return exp(axis / sine * np.arctan2(sine, float(a @ b)))

@@ -1,4 +1,4 @@
-"""Closed triangle meshes from stations along an axis: the clay of the mannequin."""
+"""Closed triangle meshes from rings, and their normals."""
 
 from __future__ import annotations
 
@@ -48,86 +48,6 @@ def frame_along(axis: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
     front = hint - (hint @ d) * d
     front /= np.linalg.norm(front)
     return np.stack([front, np.cross(d, front), d])
-
-
-def resample(stations: Float[np.ndarray, "stations 5"], count: int) -> Float[np.ndarray, "count 5"]:
-    """``count`` stations evenly along, on the smooth (PCHIP-like cosine) way between them."""
-    from gaitsmith.geometry.curves import pchip_slopes
-
-    x = stations[:, 0]
-    at = np.linspace(x[0], x[-1], count)
-    slopes = pchip_slopes(x, stations)
-    k = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
-    h = (x[k + 1] - x[k])[:, None]
-    u = (at - x[k])[:, None] / h
-    a, b = stations[k], stations[k + 1]
-    out = (
-        (2 * u**3 - 3 * u**2 + 1) * a
-        + (u**3 - 2 * u**2 + u) * h * slopes[k]
-        + (3 * u**2 - 2 * u**3) * b
-        + (u**3 - u**2) * h * slopes[k + 1]
-    )
-    out[:, 0] = at
-    return out
-
-
-def tube(
-    stations: Float[np.ndarray, "stations 5"],
-    frame: Float[np.ndarray, "3 3"],
-    origin: Float[np.ndarray, "3"],
-    *,
-    caps: tuple[float, float],
-    around: int,
-    rings: int | None,
-    square: float = 2.0,
-) -> Mesh:
-    """Elliptic tube with rounded ends.
-
-    Parameters
-    ----------
-    stations
-        Rows ``(along, front radius, side radius, front shift, side shift)``, meters.
-    frame
-        Rows ``(front, side, axis)`` in the joint's frame, as of :func:`frame_along`.
-    origin
-        Where ``along`` is 0, meters.
-    caps
-        How far the rounded ends reach beyond the first and the last station, meters.
-    around, rings
-        Vertices of a ring; rings between the caps, or None for one at each station.
-    square
-        Exponent of the superellipse: 2 is an ellipse, more is boxier.
-    """
-    table = stations if rings is None else resample(stations, rings)
-    angles = np.deg2rad([64.0, 34.0])
-    ends: list[Float[np.ndarray, "2 5"]] = []
-    for row, reach in ((table[0], -caps[0]), (table[-1], caps[1])):
-        end = np.repeat(row[None], len(angles), axis=0)
-        end[:, 0] += reach * np.sin(angles)
-        end[:, 1:3] *= np.cos(angles)[:, None]
-        ends.append(end)
-    table = np.concatenate([ends[0], table, ends[1][::-1]])
-    turn = 2.0 * np.pi * np.arange(around) / around
-    cosine, sine = np.cos(turn), np.sin(turn)
-    unit_front = np.sign(cosine) * np.abs(cosine) ** (2.0 / square)
-    unit_side = np.sign(sine) * np.abs(sine) ** (2.0 / square)
-    local = np.stack(
-        [
-            table[:, 1:2] * unit_front + table[:, 3:4],
-            table[:, 2:3] * unit_side + table[:, 4:5],
-            np.broadcast_to(table[:, 0:1], (len(table), around)),
-        ],
-        axis=-1,
-    )
-    first, last = table[len(angles)], table[-len(angles) - 1]
-    poles = np.array(
-        [
-            [first[3], first[4], first[0] - caps[0]],
-            [last[3], last[4], last[0] + caps[1]],
-        ]
-    )
-    placed = poles @ frame + origin
-    return skin(local @ frame + origin, placed[0], placed[1])
 
 
 def ball(

@@ -131,15 +131,9 @@ def outline(last: Last) -> Float[np.ndarray, "points 2"]:
     return np.concatenate([left, right[1:-1]])
 
 
-def _stations(last: Last, low: float, high: float) -> Float[np.ndarray, "n"]:
-    inner = _LAST[(_LAST[:, 0] > low + 1e-3) & (_LAST[:, 0] < high - 1e-3), 0]
-    ends = [s for s in (low, high) if 0.0 < s < 1.0]
-    return np.unique(np.concatenate([inner, ends]))
-
-
-def outsole(last: Last, low: float, high: float) -> Mesh:
-    """Flat slab under the shoe between two shares of the last; its underside is the sole."""
-    share = _stations(last, low, high)
+def outsole(last: Last) -> Mesh:
+    """Flat slab under the shoe; its underside is the sole."""
+    share = _LAST[1:-1, 0]
     along, edges = last.along(share), last.sides(share) * 1.05
     thick = 0.24 * last.ankle
     zero, top = np.zeros_like(share), np.full_like(share, thick)
@@ -154,31 +148,18 @@ def outsole(last: Last, low: float, high: float) -> Mesh:
         (zero, zero),
     ]
     rings = np.stack([np.stack([along, up, left], axis=1) for up, left in columns], axis=1)
-    # the slab begins at the heel and ends at the tip exactly; where it is cut it is flat
-    ends = np.zeros((2, 3))
-    ends[:, 0] = last.along(np.array([low, high]))
-    ends[:, 1] = [0.5 * thick * (0.0 < cut < 1.0) for cut in (low, high)]
+    # the slab begins at the heel and ends at the tip exactly
+    ends = np.array([[0.0, 0.0, 0.0], [last.length, 0.0, 0.0]])
     placed = last.place(ends)
     return skin(last.place(rings), placed[0], placed[1])
 
 
-def upper(last: Last, low: float, high: float, *, around: int) -> Mesh:
-    """Upper of the shoe between two shares of the last, standing on the outsole.
-
-    A piece that starts at the ball (``low`` > 0) reaches back into the other one with a
-    rounded end, which fills the gap when the toes bend.
-    """
-    share = _stations(last, low, high)
+def upper(last: Last, *, around: int) -> Mesh:
+    """Upper of the shoe, standing on the outsole."""
+    share = _LAST[1:-1, 0]
     along, edges = last.along(share), last.sides(share) * 0.97
     high_up = np.interp(share, _UPPER[:, 0], _UPPER[:, 1]) * last.ankle
     base = np.full_like(share, 0.12 * last.ankle)
-    end_high = float(high_up[-1])
-    if low > 0.0:
-        back = np.array([0.030, 0.020]) * last.length / 0.264
-        along = np.concatenate([along[0] - back, along])
-        edges = np.concatenate([edges[:1] * 0.55, edges[:1] * 0.85, edges])
-        base = np.concatenate([[0.62 * high_up[0], 0.45 * high_up[0]], base])
-        high_up = np.concatenate([[0.80 * high_up[0], 0.93 * high_up[0]], high_up])
     turn = 2.0 * np.pi * np.arange(around) / around
     cosine, sine = np.cos(turn), np.sin(turn)
     middle, half = edges.mean(1)[:, None], 0.5 * (edges[:, :1] - edges[:, 1:])
@@ -193,11 +174,7 @@ def upper(last: Last, low: float, high: float, *, around: int) -> Mesh:
         ],
         axis=-1,
     )
-    start = [float(along[0]) if low > 0.0 else 0.002, float(0.5 * (base[0] + high_up[0])), 0.0]
-    end = [
-        float(last.along(np.array([high]))[0]) - (0.002 if high >= 1.0 else 0.0),
-        0.5 * end_high,
-        0.0,
-    ]
+    start = [0.002, float(0.5 * (base[0] + high_up[0])), 0.0]
+    end = [last.length - 0.002, 0.5 * float(high_up[-1]), 0.0]
     placed = last.place(np.array([start, end]))
     return skin(last.place(rings), placed[0], placed[1])

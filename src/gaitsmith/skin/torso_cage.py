@@ -170,7 +170,7 @@ def _arm_share(
     clavicle = (0.0, 0.15, 0.40, 0.60, 0.45, 0.10)[k] if k < 6 else 0.0
     arm = (0.03, 0.30, 0.40, 0.34, 0.04, 0.0)[k] if k < 6 else 0.0
     near = np.clip((side - 0.35) / 0.65, 0.0, 1.0)
-    if f"{word}Shoulder" in fit.maker.skeleton.names:
+    if f"{word}Shoulder" in fit.measures.skeleton.names:
         share = (clavicle * side)[:, None]
         out = out * (1.0 - share) + share * fit.one(f"{word}Shoulder")
     share = (arm * near)[:, None]

@@ -2,21 +2,48 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from gaitsmith.gait.neutral import neutral_cycle, subject
+from gaitsmith.gait.posture import (
+    with_easy_shoulders_and_hands,
+    with_head_that_follows,
+    with_pelvis_tilt,
+)
+from gaitsmith.plan.rhythm import UNEVEN
 from gaitsmith.synthesis.cycle_overlay import CycleOverlay
 from gaitsmith.synthesis.upper_body import Manner, RuleOverlay
 from gaitsmith.walks import KinematicWalk, winter
+from gaitsmith.walks.files import built_in
 from gaitsmith.walks.from_cycle import walk_data_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from jaxtyping import Float
+
     from gaitsmith.synthesis.overlay import Overlayer
+    from gaitsmith.walks.data import WalkData
     from gaitsmith.walks.learned import LearnedGait
     from gaitsmith.walks.model import StraightWalk
+
+
+#: Forward tilt given to the pelvis of ``neutral``, radians: the line of its spines is level in the
+#: measured man (-3 to 2 deg, markers), 11.6 +- 5 deg forward in people (Schwartz 2008). Half of it.
+PELVIS_TILT = float(np.radians(5.0))
+
+#: How the legs of ``neutral`` change with the step length. Bounce: 15.7 cm per meter of step where
+#: the whole is 3.7 cm at 0.71 m; 27 % of the compass arc at 0.9 m/s, 58-70 % above 1.1. Swing and
+#: toe-off pitch (radians per leg length): the swing knee flexes 45, 55, 59, 61 deg at very slow to
+#: fast (Schwartz 2008), toe-off pitch is -38 - 17.5 v deg (CMU 07).
+BOUNCE_POWER, SWING_POWER, OFF_GAIN = 3.0, 1.6, 1.0
+
+#: Smaller turns of a sole or of toes about their edge are none, radians.
+ONSET = 1e-4
 
 
 @dataclass(frozen=True)
@@ -34,6 +61,8 @@ class Habits:
         Over leg length, between the lines of left and right feet.
     toe_out
         Radians of [left, right].
+    lengths, durations
+        Of the steps that land the [left, right] foot, over the mean.
     """
 
     step_length: float
@@ -41,6 +70,8 @@ class Habits:
     leg_length: float
     step_width: float
     toe_out: tuple[float, float]
+    lengths: tuple[float, float] = (1.0, 1.0)
+    durations: tuple[float, float] = (1.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -54,8 +85,36 @@ class Gait:
 
 def neutral(_: Manner | None = None) -> Gait:
     """A measured man's whole body, made symmetric, his arms relaxed [Rajagopal 2016]."""
-    cycle, body = neutral_cycle(), subject()
-    return Gait(KinematicWalk([walk_data_of(cycle, body)]), CycleOverlay(cycle, body.leg_length))
+    return _neutral()
+
+
+@cache
+def _neutral() -> Gait:
+    cycle = with_head_that_follows(with_pelvis_tilt(neutral_cycle(), PELVIS_TILT))
+    cycle = with_easy_shoulders_and_hands(cycle)
+    walk = KinematicWalk([built_in("neutral_step")])
+    return Gait(walk, CycleOverlay(cycle, subject().leg_length))
+
+
+def neutral_step() -> WalkData:
+    """The legs of ``neutral``, that change with the step length as people's; see the data file."""
+    walk, _ = walk_data_of(neutral_cycle(), subject())
+    old = walk.character
+    knee, strike, off, meta = old.gains
+    # sole and toes keep step with each other
+    gains = (knee, strike, OFF_GAIN, meta * OFF_GAIN / off)
+    new = replace(old, gains=gains, bounce_power=BOUNCE_POWER, swing_power=SWING_POWER)
+    return walk.with_(
+        character=new,
+        meta=walk.meta.with_values(_rising(walk.meta.values)),
+        foot2=walk.foot2.with_values(-_rising(-walk.foot2.values)),
+    )
+
+
+def _rising(values: Float[np.ndarray, "n c"]) -> Float[np.ndarray, "n c"]:
+    """Nothing until they rise for good: a heel or a ball does not leave and come back by a hair."""
+    never_less = np.maximum.accumulate(values, axis=0)
+    return np.where(never_less < ONSET, 0.0, never_less)
 
 
 def winter_rules(manner: Manner | None = None) -> Gait:
@@ -76,8 +135,18 @@ def learned(gait: LearnedGait, manner: Manner | None = None) -> Gait:
             leg_length=leg,
             step_width=gait.step_width / leg,
             toe_out=gait.toe_out,
+            lengths=_over_mean(*gait.step_lengths),
+            # the step on the left foot lands the right one
+            durations=_over_mean(1.0 - gait.cycle.events[1, 0], gait.cycle.events[1, 0]),
         ),
     )
+
+
+def _over_mean(left: float, right: float) -> tuple[float, float]:
+    """Both over their mean, as far as steps may be uneven."""
+    share = 2.0 * float(left) / float(left + right)
+    share = min(max(share, 1.0 - UNEVEN), 1.0 + UNEVEN)
+    return share, 2.0 - share
 
 
 #: Built-in gaits by the name the command line uses.

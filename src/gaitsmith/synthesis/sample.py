@@ -12,20 +12,26 @@ from gaitsmith.body.rig import skeleton_of
 from gaitsmith.contact.apply import local_legs
 from gaitsmith.conventions import SIDES
 from gaitsmith.errors import InvalidInputError
-from gaitsmith.geometry.rotations import exp, sign_continuous
+from gaitsmith.geometry.rotations import exp
 from gaitsmith.motion.motion import Labels, Motion
 from gaitsmith.synthesis.overlay import upper_joints
 
 if TYPE_CHECKING:
     from typing import Any
 
+    from jaxtyping import Float
+
     from gaitsmith.body.body import Body
+    from gaitsmith.contact.apply import Poses
     from gaitsmith.ground import Ground
+    from gaitsmith.motion.skeleton import Skeleton
     from gaitsmith.synthesis.step import PreparedWalk
 
 
-#: Frames that one motion may have: about 5 GB of work space.
+#: Frames that one motion may have: about 2 GB.
 MOST_FRAMES = 1_000_000
+#: Frames that are posed together: their numbers stay in the processor's cache.
+BLOCK = 2048
 
 
 def sample_walk(
@@ -44,28 +50,62 @@ def sample_walk(
         )
     frames = int(np.floor(walk.duration * fps + 1e-6)) + 1
     times = np.arange(frames) / fps
-    poses = walk.poses(np.minimum(times, walk.duration))
     skeleton = skeleton_of(body)
-    rotations = np.zeros((frames, len(skeleton), 4))
-    rotations[..., 3] = 1.0
-    rotations[:, 0] = poses.pelvis
+    root = np.empty((frames, 3))
+    rotations = np.empty((frames, len(skeleton), 4))
+    contacts = np.empty((frames, 2, 3), dtype=np.bool_)
+    before = None
+    for start in range(0, frames, BLOCK):
+        rows = slice(start, min(start + BLOCK, frames))
+        poses = walk.poses(np.minimum(times[rows], walk.duration))
+        root[rows], contacts[rows] = poses.center, poses.contacts
+        local = _local_rotations(poses, body, skeleton)
+        before = _keep_signs(local, before)
+        rotations[rows] = local.transpose(2, 0, 1)
+    for array in (root, rotations, contacts):
+        array.flags.writeable = False  # so that the motion need not copy it
+    return Motion(
+        skeleton=skeleton,
+        root_position=root,
+        rotations=rotations,
+        fps=fps,
+        contacts=contacts,
+        labels=_labels(walk, ground, times, recipe),
+    )
+
+
+def _local_rotations(
+    poses: Poses, body: Body, skeleton: Skeleton
+) -> Float[np.ndarray, "joints 4 F"]:
+    """Joint to parent, frames last: what is next to each other is worked on together."""
+    out = np.zeros((len(skeleton), 4, len(poses.center)))
+    out[:, 3] = 1.0
+    out[0] = poses.pelvis.T
     legs = local_legs(poses)
     for side, name in enumerate(SIDES):
         for part, turned in legs.items():
-            rotations[:, skeleton.index(f"{name}{part}")] = turned[:, side]
-    for i, name in enumerate(upper_joints(body)):
-        if poses.upper[:, i].any():
-            rotations[:, skeleton.index(name)] = exp(poses.upper[:, i])
-    rotations = sign_continuous(rotations)
-    rotations.flags.writeable = False  # so that the motion need not copy it
-    return Motion(
-        skeleton=skeleton,
-        root_position=poses.center,
-        rotations=rotations,
-        fps=fps,
-        contacts=poses.contacts,
-        labels=_labels(walk, ground, times, recipe),
-    )
+            out[skeleton.index(f"{name}{part}")] = turned[:, side].T
+    joints = np.array([skeleton.index(name) for name in upper_joints(body)])
+    upper = poses.upper.swapaxes(0, 1)
+    moves = upper.any(axis=(1, 2))
+    if moves.any():
+        out[joints[moves]] = exp(upper[moves]).swapaxes(1, 2)
+    return out
+
+
+def _keep_signs(
+    local: Float[np.ndarray, "joints 4 F"], before: Float[np.ndarray, "joints 4"] | None
+) -> Float[np.ndarray, "joints 4"]:
+    """Of q and -q, which are one rotation, the one nearer to the frame before; the last frame."""
+    flip = np.zeros((local.shape[0], local.shape[2]), dtype=np.bool_)
+    products = local[..., 1:] * local[..., :-1]
+    flip[:, 1:] = products[:, 0] + products[:, 1] + products[:, 2] + products[:, 3] < 0.0
+    if before is not None:
+        flip[:, 0] = (local[..., 0] * before).sum(-1) < 0.0
+    if flip.any():
+        odd = np.cumsum(flip, axis=1) % 2 == 1
+        np.negative(local, out=local, where=odd[:, None])
+    return np.array(local[..., -1])
 
 
 def _labels(

@@ -13,6 +13,8 @@ from gaitsmith.synthesis.clock import Clock
 from gaitsmith.synthesis.join import join_speeds
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
@@ -30,9 +32,12 @@ class WalkerState:
     hip_height
         Height of the hips over the stance foot's floor as the last step left them, before any
         correction, meters; None at the start of a walk.
+    duration
+        Seconds that the last step took; None at the start of a walk.
     """
 
     hip_height: float | None = None
+    duration: float | None = None
 
 
 @runtime_checkable
@@ -63,6 +68,17 @@ class StepGenerator(Protocol):
 
     def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
         """Plan one step from ``state``; raise InfeasibleStepError if impossible."""
+        ...
+
+
+@runtime_checkable
+class BatchGenerator(Protocol):
+    """A step generator that plans consecutive steps together."""
+
+    def prepare_all(
+        self, body: Body, state: WalkerState, steps: Sequence[PlannedStep]
+    ) -> list[PreparedStep]:
+        """What ``prepare`` gives step after step, each from where the one before ends."""
         ...
 
 
@@ -114,16 +130,24 @@ def prepare_walk(
 
     ``rest`` seconds of standing follow a walk that ends in standing.
     """
-    state, prepared = WalkerState(), []
-    for step in plan.steps():
-        done = generator.prepare(body, state, step)
-        prepared.append(done)
-        state = done.end
+    prepared = _prepared(plan.steps(), generator, body)
     clock = Clock.of(plan, rest=rest if plan.kinds[-1] == "stop" else 0.0)
     references = join_speeds([p.reference for p in prepared])
     if plan.kinds[-1] == "stop":
         references.append(_stand_still(references[-1]))
     return PreparedWalk(plan, plan_contact(references, body, ground), clock)
+
+
+def _prepared(steps: list[PlannedStep], generator: StepGenerator, body: Body) -> list[PreparedStep]:
+    """All steps, at once where the generator can."""
+    if isinstance(generator, BatchGenerator):
+        return generator.prepare_all(body, WalkerState(), steps)
+    state, out = WalkerState(), []
+    for step in steps:
+        done = generator.prepare(body, state, step)
+        out.append(done)
+        state = done.end
+    return out
 
 
 def _stand_still(last: ReferenceStep) -> ReferenceStep:

@@ -11,6 +11,7 @@ import numpy as np
 from gaitsmith.contact import ReferenceStep, StepCurves
 from gaitsmith.conventions import UP, ahead, leftward
 from gaitsmith.errors import InvalidInputError
+from gaitsmith.synthesis.overlay import stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
 from gaitsmith.synthesis.upper_body import RuleOverlay
 from gaitsmith.walks.model import SagittalStep, StepRequest, StraightWalk
@@ -56,6 +57,27 @@ class _Line:
     def aside(self, foot: Footstep) -> float:
         """How far to the left of the line, meters."""
         return float((foot.position - self.here) @ self.left)
+
+
+def is_straight(step: PlannedStep) -> bool:
+    """Whether :class:`StraightGenerator` walks this step: no turn, two parallel lines, no lean.
+
+    A start or stop must have its feet side by side.
+    """
+    stance, target, origin = step.stance, step.target, step.origin
+    if not (stance.direction == target.direction == origin.direction):
+        return False
+    if stance.lean != (0.0, 0.0) or target.lean != (0.0, 0.0) or origin.lean != (0.0, 0.0):
+        return False
+    if stance.gaze != (0.0, 0.0) or target.gaze != (0.0, 0.0) or origin.gaze != (0.0, 0.0):
+        return False
+    way, left = ahead(stance.direction), leftward(stance.direction)
+    to_target, to_origin = target.position - stance.position, origin.position - stance.position
+    if abs(float((to_target - to_origin) @ left)) > STRAIGHT:
+        return False
+    if step.kind == "start" and abs(float(to_origin @ way)) > STRAIGHT:
+        return False
+    return step.kind != "stop" or abs(float(to_target @ way)) <= STRAIGHT
 
 
 @dataclass(frozen=True)
@@ -105,6 +127,8 @@ class StraightGenerator:
             rise=rise,
             hip_height=state.hip_height,
             kind=step.kind,
+            previous_duration=state.duration,
+            stride=stride_of(step) % self._overlay.strides,
         )
         setting = _Setting(
             direction=step.stance.direction,
@@ -126,7 +150,8 @@ class StraightGenerator:
             target=step.target.position,
             target_heading=step.target.heading,
         )
-        end = WalkerState(hip_height=float(sagittal.center[-1, 1]) - rise)
+        height = float(sagittal.center[-1, 1]) - rise
+        end = WalkerState(hip_height=height, duration=step.duration)
         return TabledStep(step.duration, end, reference, body, self._ground)
 
     def _draw(
@@ -139,7 +164,7 @@ class StraightGenerator:
 
 def _rounded(request: StepRequest) -> StepRequest:
     """Lengths to a picometer, so that equal steps are recognized and drawn once."""
-    height = request.hip_height
+    height, before = request.hip_height, request.previous_duration
     return replace(
         request,
         previous_length=round(request.previous_length, 12),
@@ -148,6 +173,7 @@ def _rounded(request: StepRequest) -> StepRequest:
         duration=round(request.duration, 12),
         rise=round(request.rise, 12),
         hip_height=None if height is None else round(height, 12),
+        previous_duration=None if before is None else round(before, 12),
     )
 
 

@@ -18,9 +18,11 @@ from gaitsmith.conventions import SIDE_SIGN
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.rotations import about, exp, inverse, log, multiply
-from gaitsmith.synthesis.overlay import Overlay
+from gaitsmith.synthesis.overlay import Overlay, Samples
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
@@ -96,24 +98,33 @@ class Manner:
 class RuleOverlay:
     """The rules as an :class:`~gaitsmith.synthesis.overlay.Overlayer`."""
 
+    strides = 1
+
     def __init__(self, manner: Manner | None = None) -> None:
         self._manner = manner or Manner()
 
     def __call__(self, body: Body, request: StepRequest, step: SagittalStep) -> Overlay:
-        """See :func:`rule_overlay`."""
-        return rule_overlay(body, request, step, self._manner)
+        """See :func:`rule_overlays`; every stride is the same."""
+        return self.many(body, [request], [step])[0]
+
+    def many(
+        self, body: Body, requests: Sequence[StepRequest], steps: Sequence[SagittalStep]
+    ) -> list[Overlay]:
+        """See :class:`gaitsmith.synthesis.overlay.BatchOverlayer`."""
+        return rule_overlays(body, requests, steps, self._manner)
 
 
-def rule_overlay(body: Body, request: StepRequest, step: SagittalStep, manner: Manner) -> Overlay:
-    """Pelvis, trunk, head and arms of one step, by rule.
+def rule_overlays(
+    body: Body, requests: Sequence[StepRequest], steps: Sequence[SagittalStep], manner: Manner
+) -> list[Overlay]:
+    """Pelvis, trunk, head and arms of steps, by rule.
 
     Amplitudes run from the previous step's to this step's, so that steps of any length join;
     all is zero in standing.
     """
-    p, s = step.phase, float(SIDE_SIGN[request.side])
-    e0 = 0.0 if request.kind == "start" else request.previous_length / body.leg_length
-    e1 = 0.0 if request.kind == "stop" else request.length / body.leg_length
-    e0, e1 = e0 / manner.usual, e1 / manner.usual
+    samples = Samples.of(requests, steps)
+    p, s = samples.phase, SIDE_SIGN[samples.side]
+    e0, e1 = (e / body.leg_length / manner.usual for e in samples.lengths(requests))
     on = 1.0 if manner.pelvis else 0.0
     ease = smoothstep(p)
     envelope = e0 + (e1 - e0) * ease
@@ -122,7 +133,7 @@ def rule_overlay(body: Body, request: StepRequest, step: SagittalStep, manner: M
     turn = -s * (e0 - (e0 + e1) * 0.5 * (1.0 - np.cos(np.pi * p)))
     tip = s * envelope * np.sin(np.pi * p) * (1.0 + 0.5 * np.sin(2.0 * np.pi * p))
     reach = s * manner.sway * body.hip_width
-    sway = shifted_sway(p, request, reach * np.sin(np.pi * (p - 0.06)), e0, e1, abs(reach))
+    sway = shifted_sway(samples, reach * np.sin(np.pi * (p - 0.06)), e0, e1, np.abs(reach))
     pelvis = on * np.stack(
         [manner.pelvis_tilt * envelope, manner.pelvis_rotation * turn, manner.pelvis_list * tip],
         axis=-1,
@@ -135,54 +146,50 @@ def rule_overlay(body: Body, request: StepRequest, step: SagittalStep, manner: M
         ],
         axis=-1,
     )
-    chord = step.center[0, 1] + (step.center[-1, 1] - step.center[0, 1]) * p
+    first, last = (samples.spread([q.center[end, 1] for q in steps]) for end in (0, -1))
     nod = np.zeros_like(pelvis)
-    nod[:, 0] = on * manner.head_pitch * (step.center[:, 1] - chord)
+    nod[:, 0] = on * manner.head_pitch * (samples.center[:, 1] - (first + (last - first) * p))
 
     pelvis_q, thorax_q, head_q = exp(pelvis), exp(thorax), exp(nod)
     n = body.spine_segments
     spine = log(multiply(inverse(pelvis_q), thorax_q)) / n
     neck = 0.5 * log(multiply(inverse(thorax_q), head_q))
-    swing = _arm_swing(request.side, step, manner)
+    swing = _arm_swing(samples, manner)
     arms = [_arm(side, swing[:, side], manner) for side in (0, 1)]
     upper = np.stack([*[spine] * n, neck, neck, *arms[0], *arms[1]], axis=1)
-    return Overlay(sway=on * sway, pelvis=pelvis, upper=upper)
+    return samples.split(on * sway, pelvis, upper)
 
 
 def shifted_sway(
-    p: Float[np.ndarray, "T"],
-    request: StepRequest,
-    steady: Float[np.ndarray, "T"],
-    e0: float,
-    e1: float,
-    reach: float,
-) -> Float[np.ndarray, "T"]:
-    """Lateral path of the hips of one step, meters to the left, from that of a steady walk.
+    samples: Samples,
+    steady: Float[np.ndarray, "M"],
+    e0: Float[np.ndarray, "M"],
+    e1: Float[np.ndarray, "M"],
+    reach: Float[np.ndarray, "M"] | float,
+) -> Float[np.ndarray, "M"]:
+    """Lateral path of the hips, meters to the left, from that of a steady walk.
 
     Nearly the same at all step lengths ``e0`` (before) and ``e1`` (this), over the usual one.
     Before the first foot can leave the ground the weight must be over the other one, so a
     start shifts early and far, ``reach`` meters (Yiou et al. 2016, 2017).
     """
-
-    def size(e: float) -> float:
-        return float(np.tanh(3.0 * e))
-
-    if request.kind == "start":
-        shift = float(SIDE_SIGN[request.side]) * 1.1 * reach * size(e1) * smoothstep(p / 0.30)
+    p, first, last = samples.phase, np.tanh(3.0 * e0), np.tanh(3.0 * e1)
+    out = (first + (last - first) * smoothstep(p)) * steady
+    if samples.starts.any():
+        shift = SIDE_SIGN[samples.side] * 1.1 * reach * last * smoothstep(p / 0.30)
         later = smoothstep((p - 0.30) / 0.60)
-        return (1.0 - later) * shift + later * size(e1) * steady
-    return (size(e0) + (size(e1) - size(e0)) * smoothstep(p)) * steady
-
-
-def _arm_swing(side: int, step: SagittalStep, manner: Manner) -> Float[np.ndarray, "T 2"]:
-    """Forward swing of the [left, right] upper arm about its middle, radians."""
-    ahead_of_hips = step.ankle[..., 0] - step.center[:, None, 0]
-    below = np.maximum(step.center[:, None, 1] - step.ankle[..., 1], 1e-6)
-    leg = np.arctan2(ahead_of_hips, below)  # (T, 2) stance, swing
-    mean = 0.5 * (leg[:, 0] - leg[:, 1]) * (manner.arm_swing if manner.arms else 0.0)
-    out = np.empty((len(mean), 2))
-    out[:, side], out[:, 1 - side] = -mean, mean
+        out = np.where(samples.starts, (1.0 - later) * shift + later * last * steady, out)
     return out
+
+
+def _arm_swing(samples: Samples, manner: Manner) -> Float[np.ndarray, "M 2"]:
+    """Forward swing of the [left, right] upper arm about its middle, radians."""
+    ahead_of_hips = samples.ankle[..., 0] - samples.center[:, None, 0]
+    below = np.maximum(samples.center[:, None, 1] - samples.ankle[..., 1], 1e-6)
+    leg = np.arctan2(ahead_of_hips, below)  # (M, 2) stance, swing
+    mean = 0.5 * (leg[:, 0] - leg[:, 1]) * (manner.arm_swing if manner.arms else 0.0)
+    left = np.where(samples.side == 0, -mean, mean)
+    return np.stack([left, -left], axis=-1)
 
 
 def _arm(

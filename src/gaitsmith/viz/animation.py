@@ -31,6 +31,8 @@ _REACH = 1.8
 # Where the sun stands in the camera's level frame (right, up, toward the viewer).
 _SUN = np.array([0.38, 1.0, 0.16])
 _FINE = 2
+# Pixels of the picture to one of the shadow's mask.
+_COARSE = 6
 
 
 def gif(motion: Motion, path: str | Path, *, width: int = 480, fps: float = 20.0) -> None:
@@ -42,7 +44,8 @@ def gif(motion: Motion, path: str | Path, *, width: int = 480, fps: float = 20.0
     Parameters
     ----------
     motion
-        At least one frame of a skeleton with VRM humanoid names.
+        At least one frame. A rig with the bones of a person is shown as one, whatever its
+        names and its rest pose; any other as a solid along each bone.
     path
         Where to write; GIF whatever its suffix.
     width
@@ -54,7 +57,7 @@ def gif(motion: Motion, path: str | Path, *, width: int = 480, fps: float = 20.0
     Raises
     ------
     InvalidInputError
-        If the motion has no frames, no joint has a humanoid name, or a number is out of range.
+        If the motion has no frames, or a number is out of range.
     """
     if not 120 <= width <= 1920 or width != int(width):
         raise InvalidInputError(f"width must be a whole number from 120 to 1920, got {width!r}")
@@ -64,7 +67,7 @@ def gif(motion: Motion, path: str | Path, *, width: int = 480, fps: float = 20.0
     count = int(np.floor(motion.duration * 100.0 / delay + 1e-9)) + 1
     frames = np.round(np.arange(count) * delay / 100.0 * motion.fps).astype(int)
     frames = np.minimum(frames, len(motion) - 1).tolist()
-    colors = _shared_palette([scene.draw(frame) for frame in frames[:: max(1, count // 6)]])
+    colors = _shared_palette([scene.draw(frame) for frame in frames[:: max(1, count // 3)]])
     pictures = (
         scene.draw(frame).quantize(palette=colors, dither=Image.Dither.NONE) for frame in frames
     )
@@ -106,7 +109,7 @@ class _Scene:
         self.tracks = tracks
         self.size = (width, round(_ASPECT * width))
         self.large = (width * _FINE, self.size[1] * _FINE)
-        stature = tracks.figure.stature
+        stature = tracks.stature
         self.scale = self.large[1] / (_STATURES * stature)
         fps = tracks.motion.fps
         root = tracks.root
@@ -124,7 +127,7 @@ class _Scene:
     def _backdrop(self) -> tuple[Image.Image, Image.Image]:
         """Paper with a pool of floor colour, and how strongly the grid shows at each pixel."""
         wide, high = self.large
-        radius = 1.55 * self.tracks.figure.stature * self.scale
+        radius = 1.55 * self.tracks.stature * self.scale
         x = (np.arange(wide) + 0.5 - self.center[0]) / radius
         y = (np.arange(high) + 0.5 - self.center[1]) / (radius * np.sin(_ELEVATION) * 1.25)
         share = np.clip(1.0 - np.hypot(x[None], y[:, None]), 0.0, 1.0)
@@ -157,7 +160,7 @@ class _Scene:
 
     def _grid(self, image: Image.Image, view: Camera) -> None:
         """Lines of half a metre on the ground, fading with distance."""
-        reach = _REACH * self.tracks.figure.stature
+        reach = _REACH * self.tracks.stature
         lines: list[Float[np.ndarray, "points 3"]] = []
         for axis in (0, 2):
             middle = float(view.target[axis])
@@ -170,15 +173,20 @@ class _Scene:
                 points[:, axis], points[:, 2 - axis] = k * _CELL, run
                 points[:, 1] = self.tracks.ground(points[:, 0], points[:, 2])
                 lines.append(points)
-        mask = Image.new("L", image.size, 0)
+        box = self.fading.getbbox()
+        if box is None:
+            return
+        fading = self.fading.crop(box)
+        mask = Image.new("L", fading.size, 0)
         pen = ImageDraw.Draw(mask)
-        for points in view.project(np.stack(lines))[..., :2].reshape(len(lines), -1).tolist():
+        shown = view.project(np.stack(lines))[..., :2] - np.array(box[:2])
+        for points in shown.reshape(len(lines), -1).tolist():
             pen.line(points, fill=255, width=_FINE)
-        image.paste(palette.GRID_DARK, (0, 0), ImageChops.multiply(mask, self.fading))
+        image.paste(palette.GRID_DARK, box[:2], ImageChops.multiply(mask, fading))
 
     def _terrain(self, image: Image.Image, view: Camera) -> None:
         """Slopes and steps as shaded cells, the far ones first."""
-        x, z = self.tracks.ground_lines(view.target, _REACH * self.tracks.figure.stature)
+        x, z = self.tracks.ground_lines(view.target, _REACH * self.tracks.stature)
         points = np.empty((len(z), len(x), 3))
         points[..., 0], points[..., 2] = x[None], z[:, None]
         points[..., 1] = self.tracks.ground(points[..., 0], points[..., 2])
@@ -206,7 +214,7 @@ class _Scene:
             if self.landings is not None and self.landings[k] > now + 1e-9:
                 continue
             away = float(np.linalg.norm((shape.mean(axis=0) - view.target)[[0, 2]]))
-            share = 0.34 * np.clip(1.25 - away / (1.3 * self.tracks.figure.stature), 0.0, 1.0)
+            share = 0.34 * np.clip(1.25 - away / (1.3 * self.tracks.stature), 0.0, 1.0)
             if share > 0.02:
                 tint = palette.mix(palette.FLOOR, palette.SIDE_LINES[side], float(share))
                 pen.polygon(view.project(shape)[:, :2].ravel().tolist(), fill=tint)
@@ -219,23 +227,23 @@ class _Scene:
         level /= np.linalg.norm(level)
         sun = _SUN[0] * view.axes[0] + _SUN[1] * np.array([0.0, 1.0, 0.0]) + _SUN[2] * level
         ground = tracks.ground(*tracks.motion.root_position[frame, [0, 2]])
-        fallen = vertices - ((vertices[:, 1] - ground) / sun[1])[:, None] * sun
-        flat = view.project(fallen)[:, :2]
-        corners = flat[tracks.figure.faces]
-        edge, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-        lit = edge[:, 0] * other[:, 1] - edge[:, 1] * other[:, 0] < 0.0
-        mask = Image.new("L", image.size, 0)
-        pen = ImageDraw.Draw(mask)
-        for points in corners[lit].reshape(-1, 6).tolist():
-            pen.polygon(points, fill=66)
+        a, b, c = (vertices[corner] for corner in tracks.figure.faces.T)
+        points = np.concatenate([vertices, (a + b + c) / 3.0])
+        fallen = points - ((points[:, 1] - ground) / sun[1])[:, None] * sun
+        # a coarse picture of dots, grown until they meet: it is blurred anyway
+        wide, high = (size // _COARSE for size in image.size)
+        x, y = (view.project(fallen)[:, :2] / _COARSE).astype(np.int64).T
+        inside = (x >= 0) & (x < wide) & (y >= 0) & (y < high)
+        dots = np.zeros((high, wide), np.uint8)
+        dots[y[inside], x[inside]] = 66
+        soft = 0.014 * tracks.stature * self.scale / _COARSE
+        mask = Image.fromarray(dots).filter(ImageFilter.MaxFilter(3))
+        mask = mask.filter(ImageFilter.GaussianBlur(soft))
         box = mask.getbbox()
-        if box is None:
-            return
-        soft = 0.014 * tracks.figure.stature * self.scale
-        pad = int(3 * soft)
-        box = (box[0] - pad, box[1] - pad, box[2] + pad, box[3] + pad)
-        blurred = mask.crop(box).filter(ImageFilter.GaussianBlur(soft))
-        image.paste(palette.SHADOW, box[:2], blurred)
+        if box is not None:
+            left, top, right, bottom = (_COARSE * edge for edge in box)
+            shadow = mask.crop(box).resize((right - left, bottom - top), Image.Resampling.BILINEAR)
+            image.paste(palette.SHADOW, (left, top), shadow)
         self._contact(image, view, frame)
 
     def _contact(self, image: Image.Image, view: Camera, frame: int) -> None:
@@ -248,9 +256,9 @@ class _Scene:
         for side in (0, 1):
             points = tracks.soles[frame, side].copy()
             ground = tracks.ground(points[:, 0], points[:, 2])
-            above = np.clip((points[:, 1] - ground) / (0.05 * tracks.figure.stature), 0.0, 1.0)
+            above = np.clip((points[:, 1] - ground) / (0.05 * tracks.stature), 0.0, 1.0)
             points[:, 1] = ground
-            wide = 0.05 * tracks.figure.stature * self.scale
+            wide = 0.05 * tracks.stature * self.scale
             for (x, y), fade in zip(
                 view.project(points)[:, :2].tolist(), above.tolist(), strict=True
             ):

@@ -27,7 +27,7 @@ def figure_row(
 ) -> None:
     """The figures of ``frames`` side by side, each seen along its own heading, on the ground."""
     column = area.width / len(frames)
-    stature = tracks.figure.stature
+    stature = tracks.stature
     scale = (area.height - 26.0) / (1.03 * stature)
     level = area.bottom - 18.0
     canvas.box(area.left, level, area.right, area.bottom, palette.FLOOR)
@@ -91,7 +91,7 @@ def _contact_shadows(
     scale: float,
 ) -> None:
     """A wide faint shadow under the body and a small dark one under each foot near the floor."""
-    stature = tracks.figure.stature
+    stature = tracks.stature
     offset = float((tracks.motion.root_position[frame] - target) @ right)
     canvas.shadow(base[0] + scale * offset, base[1] + 5, 0.24 * stature * scale, 7.0, 0.16)
     if tracks.soles is None:

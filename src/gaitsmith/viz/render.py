@@ -15,7 +15,6 @@ from gaitsmith.viz import palette
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
-    from gaitsmith.skin.mannequin import Mannequin
     from gaitsmith.skin.mesh import SkinMesh
 
 VIEWS = ("right", "left", "front", "top", "three-quarter", "rear-quarter")
@@ -44,7 +43,8 @@ class Camera:
 
     def project(self, points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
         """``(x, y, depth)``: pixels, and meters toward the viewer."""
-        seen = (points - self.target) @ self.axes.T
+        # not a product of matrices: its threads would cost more than they save
+        seen = np.einsum("...c,kc->...k", points - self.target, self.axes)
         out = np.empty_like(seen)
         out[..., 0] = self.center[0] + self.scale * seen[..., 0]
         out[..., 1] = self.center[1] - self.scale * seen[..., 1]
@@ -96,22 +96,24 @@ _KEY = np.array([0.42, 0.70, 0.58]) / np.linalg.norm([0.42, 0.70, 0.58])
 _HALF = (_KEY + [0.0, 0.0, 1.0]) / np.linalg.norm(_KEY + [0.0, 0.0, 1.0])
 
 
+# Shadows lean to the cool side, as under an open sky: red, green, blue.
+_COOL = (-0.02, 0.0, 0.035)
+
+
 def shade(
-    colors: Float[np.ndarray, "n 3"],
-    normals: Float[np.ndarray, "n 3"],
-    view: Camera,
-) -> Float[np.ndarray, "n 3"]:
-    """Lit colours, sRGB 0 to 1: sky and ground light, a key light, a soft gloss, a slight rim."""
-    seen = normals @ view.axes.T
-    key = np.clip(0.12 + 0.88 * (seen @ _KEY), 0.0, None)
+    normals: Float[np.ndarray, "n 3"], view: Camera
+) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n"]]:
+    """How much light a surface gives back of its colour, and how much white it adds to it.
+
+    Sky and ground light and a key light; a soft gloss and a slight rim.
+    """
+    seen = np.einsum("nc,kc->nk", normals, view.axes)
+    key = np.clip(0.12 + 0.88 * np.einsum("nk,k->n", seen, _KEY), 0.0, None)
     sky = 0.5 + 0.5 * normals[:, 1]
     facing = np.clip(seen[:, 2], 0.0, 1.0)
-    light = (0.46 + 0.20 * sky + 0.44 * key)[:, None]
-    gloss = np.clip(seen @ _HALF, 0.0, 1.0) ** 20
+    gloss = np.clip(np.einsum("nk,k->n", seen, _HALF), 0.0, 1.0) ** 20
     rim = (1.0 - facing) ** 3 * sky
-    # shadows lean to the cool side, as under an open sky
-    tone = light + (1.0 - light) * np.array([-0.02, 0.0, 0.035])
-    return np.clip(colors * tone + (0.09 * gloss + 0.10 * rim)[:, None], 0.0, 1.0)
+    return 0.46 + 0.20 * sky + 0.44 * key, 0.09 * gloss + 0.10 * rim
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,19 +211,19 @@ def rasterize(corners: Float[np.ndarray, "faces 3 3"], size: tuple[int, int]) ->
 
 def draw_figure(
     image: Image.Image,
-    figure: Mannequin | SkinMesh,
+    figure: SkinMesh,
     positions: Float[np.ndarray, "joints 3"],
     world: Float[np.ndarray, "joints 4"],
     view: Camera,
 ) -> None:
-    """Draw the posed ``figure`` into an RGB ``image``.
+    """Draw ``figure`` in one pose into an RGB ``image``.
 
     Parameters
     ----------
     image
         What to draw on; supersample and reduce it for smooth edges.
     figure
-        The figure of the skeleton, of rigid pieces or skinned.
+        The skinned figure of the skeleton.
     positions, world
         World positions (meters) and rotations of the joints of one frame.
     view
@@ -231,18 +233,21 @@ def draw_figure(
     seen = rasterize(view.project(vertices)[figure.faces], image.size)
     if seen is None:
         return
-    normal = (normals[seen.face] * seen.weights[..., None]).sum(axis=1)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-    lit = shade(figure.face_colors[seen.face], normal, view)
-    lit *= _edges(seen, 0.028 * figure.stature, max(1, round(view.scale * 0.0022)))[:, None]
+    # light is worked out at vertices: there are fewer of them than pixels, and triangles are small
+    corners = figure.faces[seen.face]
+    light, white = (
+        np.einsum("nk,nk->n", seen.weights, value[corners]) for value in shade(normals, view)
+    )
+    edge = _edges(seen, 0.028 * figure.stature, max(1, round(view.scale * 0.0022)))
     # what is farther away is paler: it tells the far leg from the near one
     root = float((positions[0] - view.target) @ view.axes[2])
-    far = np.clip(0.5 - (seen.depth - root) / (0.25 * figure.stature), 0.0, 1.0)
-    paper = np.array(palette.PAPER) / 255.0
-    lit += (paper - lit) * (0.14 * far)[:, None]
+    far = 0.14 * np.clip(0.5 - (seen.depth - root) / (0.25 * figure.stature), 0.0, 1.0)
     left, top, width, height = seen.box
     pixels = np.zeros((height * width, 4), np.uint8)
-    pixels[seen.pixel, :3] = np.round(255.0 * lit)
+    for channel, (cool, paper) in enumerate(zip(_COOL, palette.PAPER, strict=True)):
+        color = figure.face_colors[:, channel][seen.face]
+        lit = np.clip(color * (light + (1.0 - light) * cool) + white, 0.0, 1.0) * edge
+        pixels[seen.pixel, channel] = np.rint(255.0 * lit + (paper - 255.0 * lit) * far)
     pixels[seen.pixel, 3] = 255
     layer = Image.fromarray(pixels.reshape(height, width, 4))
     image.paste(layer, (left, top), layer)

@@ -39,7 +39,8 @@ def contact_sheet(
     Parameters
     ----------
     motion
-        At least one frame of a skeleton with VRM humanoid names.
+        At least one frame. A rig with the bones of a person is shown as one, whatever its
+        names and its rest pose; any other as a solid along each bone.
     path
         Where to write; PNG whatever its suffix.
     phases
@@ -52,7 +53,7 @@ def contact_sheet(
     Raises
     ------
     InvalidInputError
-        If the motion has no frames, no joint has a humanoid name, or a number is out of range.
+        If the motion has no frames, or a number is out of range.
     """
     for name, value, low, high in (
         ("phases", phases, 2, 16),
@@ -63,7 +64,7 @@ def contact_sheet(
             raise InvalidInputError(
                 f"{name} must be a whole number from {low} to {high}, got {value!r}"
             )
-    tracks = tracks_of(motion, detail=1.5)
+    tracks = tracks_of(motion)
     unit = (width - 2 * _MARGIN) / 1520.0
     heights = {
         # figures of a row may just touch when they take long steps
@@ -128,7 +129,7 @@ def _header(canvas: Canvas, tracks: Tracks) -> None:
     motion, labels = tracks.motion, tracks.motion.labels
     speed = tracks.distance / motion.duration if motion.duration > 0 else 0.0
     facts = [f"{motion.duration:.2f} s", f"{tracks.distance:.2f} m", f"{speed:.2f} m/s"]
-    details = [f"{len(motion)} frames at {motion.fps:g} fps", f"body {tracks.figure.stature:.2f} m"]
+    details = [f"{len(motion)} frames at {motion.fps:g} fps", f"body {tracks.stature:.2f} m"]
     if labels is not None and len(labels.footstep_side) > 2:
         count = len(labels.footstep_side) - 2
         facts.insert(0, f"{count} step" + ("s" if count > 1 else ""))

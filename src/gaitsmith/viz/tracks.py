@@ -13,12 +13,14 @@ from gaitsmith.conventions import SIDES, ahead
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import inverse, multiply, rotate
 from gaitsmith.motion.kinematics import motion_kinematics, sole_positions
-from gaitsmith.skin.mannequin import Mannequin, build_mannequin
+from gaitsmith.skin.build import build_skin
+from gaitsmith.skin.t_pose import in_t_pose
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
     from gaitsmith.motion.motion import Motion
+    from gaitsmith.skin.mesh import SkinMesh
 
 #: Pelvis rotation and sway of a step vanish in a mean over about one stride, seconds.
 _STRIDE_TIME = 1.1
@@ -26,27 +28,36 @@ _STRIDE_TIME = 1.1
 
 @dataclass(frozen=True, eq=False)
 class Tracks:
-    """A motion with its world positions, facing and mannequin.
+    """A motion with its world positions, facing and figure.
 
     Attributes
     ----------
     motion
-        What is drawn; at least one frame.
+        What is drawn; at least one frame. A person has VRM names and rests in the T-pose.
     positions, world
         ``(F, J, 3)`` meters and ``(F, J, 4)`` world rotations of the joints.
     figure
-        The mannequin of its skeleton.
+        The skin of its skeleton.
     """
 
     motion: Motion
     positions: Float[np.ndarray, "frames joints 3"]
     world: Float[np.ndarray, "frames joints 4"]
-    figure: Mannequin
+    figure: SkinMesh
 
     def joint(self, name: str) -> int | None:
         """Index of the joint called ``name``, or None."""
         names = self.motion.skeleton.names
         return names.index(name) if name in names else None
+
+    @cached_property
+    def stature(self) -> float:
+        """How tall the figure is, meters; what is no person: how high it rises in its motion."""
+        if self.figure.lasts != (None, None):
+            return self.figure.stature
+        root = self.motion.root_position
+        level = self.ground(root[:, 0], root[:, 2])
+        return max(1.05 * float((self.positions[..., 1].max(axis=1) - level).max()), 0.1)
 
     @cached_property
     def root(self) -> Float[np.ndarray, "frames 3"]:
@@ -133,16 +144,20 @@ class Tracks:
                 return fact
             if isinstance(fact, dict) and fact.get("kind") == "flat":
                 return {"height": float(fact.get("height", 0.0))}
-        lowest = self.positions[..., 1] if self.soles is None else self.soles[..., 1]
-        return {"height": float(lowest.min())}
+        if self.soles is None:
+            return {"height": float(self.positions[..., 1].min())}
+        # some foot is down in most frames; a measured one may dip below the ground in a few
+        lowest = self.soles[..., 1].reshape(len(self.soles), -1).min(axis=1)
+        return {"height": float(np.quantile(lowest, 0.1))}
 
 
-def tracks_of(motion: Motion, *, detail: float = 1.0) -> Tracks:
-    """Tracks of ``motion``; InvalidInputError if it has no frames or no known joints."""
+def tracks_of(motion: Motion) -> Tracks:
+    """Tracks of ``motion``; InvalidInputError if it has no frames."""
     if len(motion) == 0:
         raise InvalidInputError("there is nothing to draw: the motion has no frames")
+    motion = in_t_pose(motion)
     positions, world = motion_kinematics(motion)
-    return Tracks(motion, positions, world, build_mannequin(motion.skeleton, detail=detail))
+    return Tracks(motion, positions, world, build_skin(motion.skeleton))
 
 
 def smooth(values: Float[np.ndarray, "frames *c"], width: float) -> Float[np.ndarray, "frames *c"]:

@@ -35,8 +35,9 @@ if TYPE_CHECKING:
 STANDING_REACH = 0.9982
 #: Samples a step is cut into, at least; the events are added to them.
 SAMPLES = 36
-#: The pose at the first toe-off is that of a walk with steps this part as long.
-START_SHARE = 0.6
+#: The pose at the first toe-off, and at that of the closing step, is that of a walk with steps this
+#: part as long: a foot that stood beside the other one rises less.
+START_SHARE, STOP_SHARE = 0.4, 0.6
 #: Part of a step in which who walks on the toes sets the heel down to stand, and raises it.
 SET_DOWN = 0.5
 #: Shares of the swing after which the toes are straight again.
@@ -187,7 +188,7 @@ class KinematicWalk:
         """To standing: the rear foot closes beside the other, which stays flat."""
         previous = request.previous_length
         walk = self.walk_data(
-            body, previous, START_SHARE * previous, request.hip_height, request.side
+            body, previous, STOP_SHARE * previous, request.hip_height, request.side
         )
         hip, ankle = np.array(walk.hip.values), np.array(walk.ankle.values)
         hip[:, 0] = affine(hip[:, 0], hip[0, 0], 0.0)
@@ -248,7 +249,8 @@ def densified(walk: WalkData) -> WalkData:
     interpolation.
     """
     off, meta = walk.toe_off, walk.meta_off
-    phase = phase_grid(walk.flat, walk.heel_off, meta, meta - 1.0, off)
+    # just after toe-off the foot turns from rolling to swinging: one more sample there
+    phase = phase_grid(walk.flat, walk.heel_off, meta, meta - 1.0, off, off + 0.4 / SAMPLES)
     later = 1.0 + phase[(phase > 0.0) & (phase <= off)]
     times = {
         "hip": phase,

@@ -38,6 +38,12 @@ class StepRequest:
     kind
         ``"start"`` from standing feet side by side, ``"walk"``, or ``"stop"``: the swing foot
         closes beside the stance foot.
+    previous_duration
+        Seconds of the step before; None: the same as this one. What goes with the speed of a walk
+        joins from step to step by it.
+    stride
+        Number of the stride, from left heel strike to left heel strike, modulo the strides after
+        which the gait repeats; 0 for nearly all.
     """
 
     side: int
@@ -48,6 +54,8 @@ class StepRequest:
     rise: float = 0.0
     hip_height: float | None = None
     kind: StepKind = "walk"
+    previous_duration: float | None = None
+    stride: int = 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,239 @@
+"""Ask a straight walk for the 2D steps of a curve: one by one, or from a table of a few.
+
+On a curve no two steps are equally long. To ask for each would cost more than all the rest, so
+steps are read between those of a grid of lengths, linearly. Steady steps lie on the grid.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.errors import InfeasibleStepError
+from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.synthesis.overlay import overlays
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jaxtyping import Bool, Float, Int
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.synthesis.overlay import Overlay, Overlayer
+    from gaitsmith.walks.model import SagittalStep, StepRequest, StraightWalk
+
+#: Lengths of the grid are this far apart, over leg length; steps may be so short.
+GRAIN, SHORTEST = 0.2, 0.1
+#: Grid steps that are remembered.
+REMEMBERED = 2048
+
+
+@dataclass(eq=False, slots=True)
+class Answer:
+    """Sagittal curves and overlay of one step, as :class:`SagittalStep` and ``Overlay`` have them.
+
+    ``previous`` and ``length`` are what was asked for; ``curves`` has all columns side by side.
+    ``bearing`` falls from 1 to 0 while the rear foot bears.
+    """
+
+    previous: float
+    length: float
+    phase: Float[np.ndarray, "T"]
+    toe_off: float
+    curves: Float[np.ndarray, "T C"]
+    bearing: Float[np.ndarray, "T"]
+
+    def raised_from(self, height: float | None) -> None:
+        """Begin at hip height ``height``, as the step before ended."""
+        if height is not None and abs(height - self.curves[0, 1]) > 1e-12:
+            self.curves[:, 1] += (height - self.curves[0, 1]) * self.bearing
+
+
+#: Columns of ``Answer.curves``: the upper body's follow.
+COLUMNS = {
+    "center": slice(0, 2),
+    "ankle": slice(2, 6),
+    "pitch": slice(6, 8),
+    "meta": slice(8, 10),
+    "bend": slice(10, 12),
+    "sway": slice(12, 13),
+    "pelvis": slice(13, 16),
+    "upper": slice(16, None),
+}
+
+
+class Asker:
+    """Puts the questions to ``walk`` and lays ``overlay`` over the answers."""
+
+    def __init__(self, walk: StraightWalk, overlay: Overlayer) -> None:
+        self._walk, self._overlay = walk, overlay
+        self._known: dict[tuple[Body, StepRequest], Answer] = {}
+
+    def ask(self, body: Body, request: StepRequest) -> Answer:
+        """The answer to just this request; a copy, to be changed at will."""
+        found = self.ask_all(body, [request])[0]
+        return replace(found, curves=np.array(found.curves))
+
+    def can(self, body: Body, request: StepRequest) -> bool:
+        """Whether ``body`` can take such a step."""
+        try:
+            self._walk.step(body, request)
+        except InfeasibleStepError:
+            return False
+        return True
+
+    def ask_all(self, body: Body, requests: Sequence[StepRequest]) -> list[Answer]:
+        """The answers to these requests, remembered: not to be changed."""
+        if len(self._known) + len(requests) > REMEMBERED:
+            self._known.clear()
+        new = [r for r in dict.fromkeys(requests) if (body, r) not in self._known]
+        if new:
+            steps = [self._walk.step(body, r) for r in new]
+            laid = overlays(self._overlay, body, new, steps)
+            for request, step, over in zip(new, steps, laid, strict=True):
+                self._known[body, request] = _answer(request, step, over)
+        return [self._known[body, r] for r in requests]
+
+    def table(
+        self, body: Body, requests: Sequence[StepRequest], anchor: float
+    ) -> list[Answer | None]:
+        """Answers read off a grid of lengths that holds ``anchor``; None where that is no good."""
+        out: list[Answer | None] = [None] * len(requests)
+        grid = _Grid(self, body, anchor, requests)
+        groups: dict[tuple[str, int, int], list[int]] = {}
+        for i, request in enumerate(requests):
+            groups.setdefault((request.kind, request.side, request.stride), []).append(i)
+        for members in groups.values():
+            for i, answer in zip(members, grid.read([requests[i] for i in members]), strict=True):
+                out[i] = answer
+        return out
+
+
+def _answer(request: StepRequest, step: SagittalStep, over: Overlay) -> Answer:
+    count = len(step.phase)
+    parts = (
+        step.center,
+        step.ankle.reshape(count, 4),
+        step.pitch,
+        step.meta,
+        step.bend,
+        over.sway[:, None],
+        over.pelvis,
+        over.upper.reshape(count, -1),
+    )
+    return Answer(
+        request.previous_length,
+        request.length,
+        step.phase,
+        step.toe_off,
+        np.concatenate(parts, axis=1),
+        1.0 - smoothstep(step.phase / step.toe_off),
+    )
+
+
+class _Grid:
+    """Steps of lengths ``anchor`` plus whole grains."""
+
+    def __init__(
+        self, asker: Asker, body: Body, anchor: float, requests: Sequence[StepRequest]
+    ) -> None:
+        self._asker, self._body = asker, body
+        self._anchor, self._grain = anchor, GRAIN * body.leg_length
+        self._lowest = int(np.ceil((0.5 * SHORTEST * body.leg_length - anchor) / self._grain))
+        values, counts = np.unique([round(r.duration, 2) for r in requests], return_counts=True)
+        self._duration = float(values[counts.argmax()])
+        self._highest: int | None = None
+
+    def _node(self, index: int) -> float:
+        return round(self._anchor + index * self._grain, 12)
+
+    def _asked(self, like: StepRequest, previous: int, length: int) -> StepRequest:
+        before = 0.0 if like.kind == "start" else self._node(previous)
+        this = 0.0 if like.kind == "stop" else self._node(length)
+        return replace(
+            like,
+            previous_length=before,
+            length=this,
+            next_length=0.0 if like.kind == "stop" else this,
+            duration=self._duration,
+            hip_height=None,
+            previous_duration=None,
+        )
+
+    def _top(self, like: StepRequest, wanted: int) -> int:
+        """The longest length of the grid, up to ``wanted``, that this body can walk."""
+        if self._highest is None or self._highest < wanted:
+            steady, top = replace(like, kind="walk"), wanted
+            while top > self._lowest + 1 and not self._asker.can(
+                self._body, self._asked(steady, top, top)
+            ):
+                top -= 1
+            self._highest = max(top, self._lowest + 1)
+        return min(wanted, self._highest)
+
+    def _cells(
+        self, like: StepRequest, lengths: Float[np.ndarray, "R"]
+    ) -> tuple[Int[np.ndarray, "R"], Float[np.ndarray, "R"], Bool[np.ndarray, "R"]]:
+        """Index of the grid length below, how far on to the next, and whether that is walked."""
+        index = np.floor((lengths - self._anchor) / self._grain + 1e-9).astype(np.int64)
+        index = np.maximum(index, self._lowest)
+        top = self._top(like, int(index.max()) + 1)
+        nodes = np.round(self._anchor + index * self._grain, 12)
+        return index, (lengths - nodes) / self._grain, index < top
+
+    def read(self, requests: Sequence[StepRequest]) -> list[Answer | None]:
+        """Answers to requests of one kind and side; None for those off the grid."""
+        like, count = requests[0], len(requests)
+        none = (np.zeros(count, dtype=np.int64), np.zeros(count), np.ones(count, dtype=np.bool_))
+        asked = np.array([(r.previous_length, r.length) for r in requests])
+        i, a, before = none if like.kind == "start" else self._cells(like, asked[:, 0])
+        j, b, after = none if like.kind == "stop" else self._cells(like, asked[:, 1])
+        out: list[Answer | None] = [None] * count
+        known = np.flatnonzero(before & after)
+        if len(known):
+            cells = (i[known], a[known], j[known], b[known])
+            found = self._between([requests[k] for k in known], *cells)
+            for k, answer in zip(known.tolist(), found, strict=True):
+                out[k] = answer
+        return out
+
+    def _between(
+        self,
+        requests: Sequence[StepRequest],
+        i: Int[np.ndarray, "R"],
+        a: Float[np.ndarray, "R"],
+        j: Int[np.ndarray, "R"],
+        b: Float[np.ndarray, "R"],
+    ) -> Sequence[Answer | None]:
+        """Answers between the four steps around each: shares ``a``, ``b`` on from ``i``, ``j``."""
+        share = np.stack([(1.0 - a) * (1.0 - b), (1.0 - a) * b, a * (1.0 - b), a * b])
+        # a corner without a share is not asked for: the one at hand stands in
+        up, on = (a != 0.0).astype(np.int64), (b != 0.0).astype(np.int64)
+        corners = np.array([[i, j], [i, j + on], [i + up, j], [i + up, j + on]])
+        nodes, index = np.unique(
+            corners.transpose(0, 2, 1).reshape(-1, 2), axis=0, return_inverse=True
+        )
+        index = index.reshape(4, len(requests))
+        try:
+            answers = self._asker.ask_all(
+                self._body, [self._asked(requests[0], *node) for node in nodes.tolist()]
+            )
+        except InfeasibleStepError:
+            return [None] * len(requests)
+        model = answers[0]
+        for other in answers[1:]:
+            if other.toe_off != model.toe_off or not np.array_equal(other.phase, model.phase):
+                return [None] * len(requests)  # its events move with the length
+        stacked = np.stack([x.curves for x in answers]).reshape(len(answers), -1)
+        curves = np.zeros((len(requests), stacked.shape[1]))
+        for corner, weight in zip(index, share, strict=True):
+            used = np.flatnonzero(weight)
+            if len(used):
+                curves[used] += weight[used, None] * stacked[corner[used]]
+        curves = curves.reshape(len(requests), *model.curves.shape)
+        return [
+            replace(model, previous=r.previous_length, length=r.length, curves=own)
+            for r, own in zip(requests, curves, strict=True)
+        ]

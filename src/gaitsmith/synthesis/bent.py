@@ -1,0 +1,165 @@
+"""The steps of a walk side by side: where they are, and what the straight walk says of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.conventions import SIDE_SIGN
+from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.plan.course import course_pieces
+from gaitsmith.synthesis.asking import COLUMNS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jaxtyping import Float, Int
+
+    from gaitsmith.geometry.splines import PlaneCurves
+    from gaitsmith.plan.footsteps import PlannedStep
+    from gaitsmith.synthesis.asking import Answer
+
+
+@dataclass(frozen=True, eq=False)
+class Bent:
+    """Geometry of S steps: their places, the curves between them, and what leads along.
+
+    ``before`` runs from beside the rear foot to beside the stance foot, ``after`` on to beside
+    the target; lengths are arc lengths, meters.
+    """
+
+    stance: Int[np.ndarray, "S"]
+    sign: Float[np.ndarray, "S"]
+    place: Float[np.ndarray, "S 3 2"]
+    heading: Float[np.ndarray, "S 3"]
+    direction: Float[np.ndarray, "S 3"]
+    curvature: Float[np.ndarray, "S 3"]
+    middle: Float[np.ndarray, "S 3 2"]
+    length: Float[np.ndarray, "S 2"]
+    lean: Float[np.ndarray, "S 3 2"]
+    gaze: Float[np.ndarray, "S 3 2"]
+
+    @staticmethod
+    def of(steps: Sequence[PlannedStep]) -> Bent:
+        """Rear foot, stance foot, target of each step, in this order."""
+        feet = [f for s in steps for f in (s.origin, s.stance, s.target)]
+        rows = np.array(
+            [
+                (
+                    f.position[0],
+                    f.position[2],
+                    *f.middle,
+                    f.heading,
+                    f.direction,
+                    f.curvature,
+                    *f.lean,
+                    *f.gaze,
+                )
+                for f in feet
+            ]
+        ).reshape(len(steps), 3, 11)
+        stance = np.array([s.stance.side for s in steps])
+        fields = {
+            "middle": rows[..., 2:4],
+            "direction": rows[..., 5],
+            "curvature": rows[..., 6],
+        }
+        length = np.stack([p.length() for p in pieces(**fields)], axis=-1)
+        return Bent(
+            stance=stance,
+            sign=SIDE_SIGN[stance],
+            place=rows[..., 0:2],
+            heading=rows[..., 4],
+            length=length,
+            lean=rows[..., 7:9],
+            gaze=rows[..., 9:11],
+            **fields,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Flat2D:
+    """The sagittal samples of S steps one after the other, x stretched to the true lengths.
+
+    Attributes
+    ----------
+    first
+        ``(S,)`` index of each step's first sample.
+    step
+        ``(M,)`` index of the step of each sample.
+    swing
+        ``(M,)`` 0 up to toe-off, 1 at heel strike.
+    off
+        ``(S,)`` index of the sample at toe-off.
+    """
+
+    first: Int[np.ndarray, "S"]
+    step: Int[np.ndarray, "M"]
+    off: Int[np.ndarray, "S"]
+    phase: Float[np.ndarray, "M"]
+    toe_off: Float[np.ndarray, "S"]
+    swing: Float[np.ndarray, "M"]
+    center: Float[np.ndarray, "M 2"]
+    ankle: Float[np.ndarray, "M 2 2"]
+    asked: Float[np.ndarray, "S 2"]
+    curves: Float[np.ndarray, "M C"]
+
+    @staticmethod
+    def of(answers: Sequence[Answer], length: Float[np.ndarray, "S 2"]) -> Flat2D:
+        """Put the answers on one axis, for steps whose true lengths are ``length``."""
+        counts = np.array([len(s.phase) for s in answers])
+        first = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        step = np.repeat(np.arange(len(answers)), counts)
+        phase = np.concatenate([s.phase for s in answers])
+        toe_off = np.array([s.toe_off for s in answers])
+        off = first + np.array([int(s.phase.searchsorted(s.toe_off)) for s in answers])
+        swing = np.maximum((phase - toe_off[step]) / (1.0 - toe_off[step]), 0.0)
+        asked = np.array([(s.previous, s.length) for s in answers])
+        curves = np.concatenate([s.curves for s in answers])
+        center = np.array(curves[:, COLUMNS["center"]])
+        # very short steps are asked for longer: smoothly pressed together over the step
+        ratio = np.where(asked > 0.0, length / np.where(asked > 0.0, asked, 1.0), 1.0)
+        ratio = np.where(np.abs(ratio - 1.0) < 1e-9, 1.0, ratio)
+        ease = smoothstep(phase)
+        center[:, 0] *= ratio[step, 0] + ease * (ratio[step, 1] - ratio[step, 0])
+        return Flat2D(
+            first=first,
+            step=step,
+            off=off,
+            phase=phase,
+            toe_off=toe_off,
+            swing=swing,
+            center=center,
+            ankle=curves[:, COLUMNS["ankle"]].reshape(-1, 2, 2),
+            asked=asked,
+            curves=curves,
+        )
+
+    def column(self, name: str) -> Float[np.ndarray, "M c"]:
+        """Samples of one of the curves."""
+        return self.curves[:, COLUMNS[name]]
+
+    @property
+    def last(self) -> Int[np.ndarray, "S"]:
+        """Index of each step's last sample."""
+        return np.concatenate([self.first[1:] - 1, [len(self.step) - 1]])
+
+
+def pieces(
+    middle: Float[np.ndarray, "S 3 2"],
+    direction: Float[np.ndarray, "S 3"],
+    curvature: Float[np.ndarray, "S 3"],
+) -> tuple[PlaneCurves, PlaneCurves]:
+    """Curves from beside the rear foot to the stance foot, and on to the target."""
+    before, after = (
+        course_pieces(
+            middle[:, i],
+            middle[:, i + 1],
+            (direction[:, i], direction[:, i + 1]),
+            (curvature[:, i], curvature[:, i + 1]),
+        )
+        for i in (0, 1)
+    )
+    return before, after

@@ -1,0 +1,158 @@
+"""Path of the hips seen from above, [KB92a] section 4: two readings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.geometry.splines import PlaneCurves
+from gaitsmith.synthesis.bent import pieces
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+    from gaitsmith.synthesis.bent import Bent, Flat2D
+
+#: Over what part of a step the hips leave, or reach, the middle of feet that stand apart.
+STANDING_SHARE = 0.7
+
+
+@dataclass(frozen=True, eq=False)
+class CenterPath:
+    """Where the hips are above the ground, sway left out, and where the person looks.
+
+    ``resting``: steps (``(S,)``) whose hips do not begin where a step before left them.
+    """
+
+    place: Float[np.ndarray, "M 2"]
+    heading: Float[np.ndarray, "M"]
+    left: Float[np.ndarray, "M 2"]
+    lean: Float[np.ndarray, "M"]
+    gaze: Float[np.ndarray, "M"]
+    resting: np.ndarray
+
+
+def track(
+    bent: Bent, flat: Flat2D, offset: float, *, standing: Float[np.ndarray, "S 2 2"]
+) -> CenterPath:
+    """The hips run on the curve beside the footsteps, at the 2D step's distance along it.
+
+    ``offset`` times the lean's tangent they are inside of it. Signed distance from beside the
+    stance foot: negative is still on the curve before. All lengths are those of the 2D step,
+    so Eq. 3 of the paper holds by itself, nothing is searched, and nothing drifts.
+    """
+    i = flat.step
+    x = flat.center[:, 0]
+    later = x >= 0.0
+    before, after = pieces(bent.middle, bent.direction, bent.curvature)
+    rows = np.where(later, i + len(bent.sign), i)
+    both = PlaneCurves(np.concatenate([before.coefficients, after.coefficients], axis=1))
+    whole = np.concatenate([bent.length[:, 0], bent.length[:, 1]])[rows]
+    along = np.where(later, x, x + whole)
+    curve = both.rows(rows)
+    degenerate = whole < 1e-9
+    u = np.where(degenerate, np.where(later, 0.0, 1.0), both.parameter(rows, along))
+    tangent = curve.derivative(u)
+    base = np.where(later, bent.direction[i, 1], bent.direction[i, 0])
+    here = np.where(degenerate, 0.0, np.arctan2(tangent[:, 0], tangent[:, 1]) - base)
+    here = np.arctan2(np.sin(here), np.cos(here))
+    here = np.where(np.abs(here) < 1e-13, 0.0, here)
+    heading = np.where(degenerate, bent.direction[i, 1], base + here)
+    way = np.stack([np.sin(heading), np.cos(heading)], axis=-1)
+    over = np.where(along > whole, along - whole, np.minimum(along, 0.0))
+    place = curve.at(u) + over[:, None] * way
+
+    chord = np.sqrt((curve.coefficients[1] ** 2).sum(-1))
+
+    def led(values: Float[np.ndarray, "S 3 2"]) -> Float[np.ndarray, "M"]:
+        first = np.where(later[:, None], values[i, 1], values[i, 0])
+        last = np.where(later[:, None], values[i, 2], values[i, 1])
+        begins, ends = chord * first[:, 1], chord * last[:, 1]
+        v = 1.0 - u
+        rise = last[:, 0] - first[:, 0]
+        return first[:, 0] + u * u * (3.0 - 2.0 * u) * rise + u * v * (v * begins - u * ends)
+
+    def led_rate(values: Float[np.ndarray, "S 3 2"]) -> Float[np.ndarray, "M"]:
+        """Change per meter."""
+        first = np.where(later[:, None], values[i, 1], values[i, 0])
+        last = np.where(later[:, None], values[i, 2], values[i, 1])
+        v, size = 1.0 - u, np.maximum(chord, 1e-9)
+        rise = (last[:, 0] - first[:, 0]) / size
+        slope = (
+            6.0 * u * v * rise
+            + v * (1.0 - 3.0 * u) * first[:, 1]
+            + u * (3.0 * u - 2.0) * last[:, 1]
+        )
+        return np.where(chord > 1e-6, slope, 0.0)
+
+    lean, gaze = led(bent.lean), led(bent.gaze)
+    left = np.stack([np.cos(heading), -np.sin(heading)], axis=-1)
+    place = place + (offset * lean)[:, None] * left
+    # hips that draw inside or come back face where they go themselves
+    heading = heading + np.arctan(offset * led_rate(bent.lean))
+    resting = np.any(standing[:, 0] != 0.0, axis=-1) | (bent.length[:, 0] < 1e-9)
+    if standing.any():
+        begins = 1.0 - smoothstep(flat.phase / STANDING_SHARE)
+        ends = smoothstep((flat.phase - 1.0 + STANDING_SHARE) / STANDING_SHARE)
+        place = place + begins[:, None] * standing[i, 0] + ends[:, None] * standing[i, 1]
+    return CenterPath(place, heading, left, lean, gaze, resting)
+
+
+def anchored(
+    bent: Bent, flat: Flat2D, offset: float, *, standing: Float[np.ndarray, "S 2 2"]
+) -> CenterPath:
+    """The paper's picture: straight ahead of the stance foot while both feet bear, then a spline.
+
+    The spline ends where the next step's straight part begins, at the 2D step's distance
+    behind the new foot, so that nothing drifts (erratum D10).
+    """
+    tracked = track(bent, flat, offset, standing=standing)
+    tracked_place = tracked.place - (offset * tracked.lean)[:, None] * tracked.left
+    i, first, last = flat.step, flat.first, flat.last
+    x = flat.center[:, 0]
+    way = np.stack([np.sin(bent.direction), np.cos(bent.direction)], axis=-1)
+    straight = bent.middle[i, 1] + x[:, None] * way[i, 1]
+    off = flat.off
+    here = bent.middle[:, 1] + x[off][:, None] * way[:, 1]
+    behind = x[last] - bent.length[:, 1]
+    there = bent.middle[:, 2] + behind[:, None] * way[:, 2]
+    size = np.linalg.norm(there - here, axis=-1)[:, None]
+    spline = PlaneCurves.hermite(here, there, size * way[:, 1], size * way[:, 2])
+    whole = spline.length()
+    share = (x - x[off][i]) / np.maximum((x[last] - x[off])[i], 1e-9)
+    curve = spline.rows(i)
+    u = spline.parameter(i, np.clip(share, 0.0, 1.0) * whole[i])
+    tangent = curve.derivative(u)
+    turn = np.arctan2(tangent[:, 0], tangent[:, 1]) - bent.direction[i, 1]
+    turn = np.arctan2(np.sin(turn), np.cos(turn))
+    flying = np.arange(len(i)) > off[i]
+    heading = bent.direction[i, 1] + np.where(flying, turn, 0.0)
+    place = np.where(flying[:, None], curve.at(u), straight)
+    left = np.stack([np.cos(heading), -np.sin(heading)], axis=-1)
+    place = place + (offset * tracked.lean)[:, None] * left
+    held = (bent.length[:, 0] < 1e-9) | (bent.length[:, 1] < 1e-9)  # starts and stops: as above
+    held = held | np.any(standing != 0.0, axis=(1, 2))
+    keep = held[i]
+    # they join what the paper's steps begin and end with
+    begun = (bent.length[:, 0] > 1e-9)[:, None]
+    gone = (bent.length[:, 1] > 1e-9)[:, None]
+    start = begun * (straight[first] - tracked_place[first])
+    end = gone * (there - tracked_place[last])
+    turn0 = begun[:, 0] * (bent.direction[:, 1] - tracked.heading[first])
+    turn1 = gone[:, 0] * (bent.direction[:, 2] - tracked.heading[last])
+    ease = smoothstep(flat.phase)
+    held_place = tracked_place + (1.0 - ease)[:, None] * start[i] + ease[:, None] * end[i]
+    held_heading = tracked.heading + (1.0 - ease) * turn0[i] + ease * turn1[i]
+    held_left = np.stack([np.cos(held_heading), -np.sin(held_heading)], axis=-1)
+    held_place = held_place + (offset * tracked.lean)[:, None] * held_left
+    return CenterPath(
+        np.where(keep[:, None], held_place, place),
+        np.where(keep, held_heading, heading),
+        np.where(keep[:, None], held_left, left),
+        tracked.lean,
+        tracked.gaze,
+        tracked.resting,
+    )

@@ -1,0 +1,338 @@
+"""Any straight walk along any footsteps, [KB92a] sections 3 to 5.
+
+For every step the paper considers its *underlying 2D step*: as long as the curve between the
+points beside the two footsteps. A straight walk answers it; here the answer is bent. All steps
+of a walk are bent at once, on all their samples.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith._checks import one_of
+from gaitsmith.contact import ReferenceStep, StepCurves
+from gaitsmith.errors import InfeasibleStepError, InvalidInputError
+from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.plan.course import lean_lever
+from gaitsmith.synthesis.asking import SHORTEST, Answer, Asker
+from gaitsmith.synthesis.bent import Bent, Flat2D
+from gaitsmith.synthesis.center import CenterPath, anchored, track
+from gaitsmith.synthesis.overlay import stride_of
+from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
+from gaitsmith.synthesis.straight import StraightGenerator, is_straight
+from gaitsmith.synthesis.swing_path import SwingPath
+from gaitsmith.synthesis.turning import TRUNK_LEAN, bent_upper
+from gaitsmith.synthesis.upper_body import RuleOverlay
+from gaitsmith.walks.model import StepRequest, StraightWalk
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jaxtyping import Float
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.ground import Ground
+    from gaitsmith.plan.footsteps import Footstep, PlannedStep
+    from gaitsmith.synthesis.overlay import Overlayer
+
+#: Ways to lean into a curve: feet outside as people do, trunk inside as [KB92a], not at all.
+BANKINGS = ("body", "trunk", "none")
+
+
+class CurvedGenerator:
+    """Walks any plan with any :class:`~gaitsmith.walks.model.StraightWalk`.
+
+    Parameters
+    ----------
+    walk
+        Gives hips and feet in the sagittal plane.
+    ground
+        Where the footsteps lie.
+    overlay
+        Pelvis, trunk, head and arms; None: the rules of :mod:`gaitsmith.synthesis.upper_body`.
+    mode
+        How the hips travel, seen from above. ``"track"``: on the curve between the footsteps.
+        ``"anchored"``: straight ahead of the stance foot while both feet bear, then a spline,
+        as the paper draws it, its drift removed (erratum D10).
+    banking
+        ``"body"``: hips and trunk together are so far inside the feet that the center of mass
+        leans by [KB92a] Eq. 4, the trunk upright, as people do. ``"trunk"``: the trunk alone
+        bends inside until it does, as the paper has it. ``"none"``.
+    exact
+        Draw every step by itself, straight ones too: slower, for comparison.
+
+    Notes
+    -----
+    On straight parts the walk is the straight walk; [KB92a] section 5.3, last paragraph.
+    """
+
+    def __init__(
+        self,
+        walk: StraightWalk,
+        ground: Ground,
+        overlay: Overlayer | None = None,
+        *,
+        mode: str = "track",
+        banking: str = "body",
+        exact: bool = False,
+    ) -> None:
+        self._walk, self._ground, self._overlay = walk, ground, overlay or RuleOverlay()
+        self._mode = one_of("mode", mode, ("track", "anchored"))
+        self._banking = one_of("banking", banking, BANKINGS)
+        self._exact = exact
+        self._straight = StraightGenerator(walk, ground, self._overlay)
+        self._asker = Asker(walk, self._overlay)
+
+    def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
+        """See :meth:`gaitsmith.synthesis.step.StepGenerator.prepare`."""
+        return self.prepare_all(body, state, [step])[0]
+
+    def prepare_all(
+        self, body: Body, state: WalkerState, steps: Sequence[PlannedStep]
+    ) -> list[PreparedStep]:
+        """Plan consecutive steps from ``state``.
+
+        The same as one after the other to a millimeter, and much quicker: many steps are read
+        off a table of the straight walk's (:mod:`gaitsmith.synthesis.asking`).
+        """
+        bent = Bent.of(steps)
+        before = [state.duration, *(s.duration for s in steps[:-1])]
+        requests = [
+            replace(
+                _request(body, s, bent.length[i]),
+                previous_duration=None if last is None else round(last, 12),
+                stride=stride_of(s) % self._overlay.strides,
+            )
+            for i, (s, last) in enumerate(zip(steps, before, strict=True))
+        ]
+        tabled = not self._exact and len(steps) > 1
+        anchor = _steady(bent.length[:, 1])
+        straight = [not self._exact and is_straight(s) for s in steps]
+        if tabled and not all(straight):
+            _bend_ends(straight, bent.length, anchor)
+        curved = [i for i, same in enumerate(straight) if not same]
+        read: dict[int, Answer | None] = {}
+        if tabled and curved and not any(requests[i].rise for i in curved):
+            table = self._asker.table(body, [requests[i] for i in curved], anchor)
+            read = dict(zip(curved, table, strict=True))
+        out: dict[int, PreparedStep] = {}
+        answers: list[Answer] = []
+        for i, step in enumerate(steps):
+            if straight[i]:
+                out[i] = self._straight.prepare(body, state, step)
+                state = out[i].end
+                continue
+            answer = read.get(i)
+            if answer is None:
+                answer = self._ask(body, replace(requests[i], hip_height=_rounded(state)), step)
+            answer.raised_from(state.hip_height)
+            answers.append(answer)
+            height = float(answer.curves[-1, 1]) - requests[i].rise
+            state = WalkerState(hip_height=height, duration=step.duration)
+        if curved:
+            rows = np.array(curved)
+            part = Bent(*(getattr(bent, name)[rows] for name in Bent.__dataclass_fields__))
+            done = self._bend(body, [steps[i] for i in curved], part, answers)
+            out |= dict(zip(curved, done, strict=True))
+        return [out[i] for i in range(len(steps))]
+
+    def _ask(self, body: Body, request: StepRequest, step: PlannedStep) -> Answer:
+        try:
+            return self._asker.ask(body, request)
+        except InfeasibleStepError as error:
+            raise _named(error, step) from None
+
+    # ------------------------------------------------------------------- bending
+
+    def _bend(
+        self,
+        body: Body,
+        steps: Sequence[PlannedStep],
+        bent: Bent,
+        answers: Sequence[Answer],
+    ) -> list[PreparedStep]:
+        flat = Flat2D.of(answers, bent.length)
+        offset = lean_lever(body) if self._banking == "body" else 0.0
+        draw = track if self._mode == "track" else anchored
+        center = draw(bent, flat, offset, standing=_standing(steps))
+        height = _height(body, bent, flat, center)
+        ankle, foot_heading = SwingPath.of(body, bent, flat).read(bent, flat)
+        center_out = np.empty((len(flat.step), 3))
+        place = center.place + flat.column("sway") * center.left
+        center_out[:, 0], center_out[:, 1], center_out[:, 2] = place[:, 0], height, place[:, 1]
+        trunk = TRUNK_LEAN.get(self._banking, 0.0)
+        upper = bent_upper(
+            body, flat.column("upper").reshape(len(place), -1, 3), center.gaze, trunk * center.lean
+        )
+        return self._cut(
+            body, steps, bent, flat, answers, center, center_out, ankle, foot_heading, upper
+        )
+
+    def _cut(
+        self,
+        body: Body,
+        steps: Sequence[PlannedStep],
+        bent: Bent,
+        flat: Flat2D,
+        answers: Sequence[Answer],
+        path: CenterPath,
+        center: Float[np.ndarray, "M 3"],
+        ankle: Float[np.ndarray, "M 2 3"],
+        foot_heading: Float[np.ndarray, "M 2"],
+        upper: Float[np.ndarray, "M U 3"],
+    ) -> list[PreparedStep]:
+        """Steps of their own again."""
+        out: list[PreparedStep] = []
+        for name, values in (("center", center), ("ankle", ankle), ("upper", upper)):
+            if not np.isfinite(values).all():
+                raise InvalidInputError(f"{name} of a step is not finite; its walk is no good")
+        origin = np.stack([s.stance.position for s in steps])
+        center[:, [0, 2]] -= origin[flat.step][:, [0, 2]]
+        ankle[..., [0, 2]] -= origin[flat.step][:, None][..., [0, 2]]
+        pair = np.stack([bent.stance, 1 - bent.stance], axis=-1)[flat.step]  # of (left, right)
+        legs = {
+            name: np.take_along_axis(flat.column(name), pair, axis=1)
+            for name in ("pitch", "meta", "bend")
+        }
+        for i, (step, answer) in enumerate(zip(steps, answers, strict=True)):
+            rows = slice(int(flat.first[i]), int(flat.first[i]) + len(answer.phase))
+            curves = StepCurves.trusted(
+                phase=answer.phase,
+                center=center[rows],
+                heading=path.heading[rows],
+                pelvis=flat.column("pelvis")[rows],
+                ankle=ankle[rows],
+                foot_heading=foot_heading[rows],
+                upper=upper[rows],
+                **{name: values[rows] for name, values in legs.items()},
+            )
+            foothold, heading = np.empty((2, 3)), np.empty(2)
+            for foot in (step.stance, step.origin):
+                foothold[foot.side], heading[foot.side] = foot.position, foot.heading
+            reference = ReferenceStep(
+                curves=curves,
+                origin=origin[i],
+                stance=step.stance.side,
+                toe_off=answer.toe_off,
+                foothold=foothold,
+                foothold_heading=heading,
+                target=step.target.position,
+                target_heading=step.target.heading,
+            )
+            rise = float(step.target.position[1] - step.stance.position[1])
+            height = float(answer.curves[-1, 1]) - rise
+            end = WalkerState(hip_height=height, duration=step.duration)
+            out.append(TabledStep(step.duration, end, reference, body, self._ground))
+        return out
+
+
+def _request(body: Body, step: PlannedStep, lengths: Float[np.ndarray, "2"]) -> StepRequest:
+    """The underlying 2D step, [KB92a] section 3: as long as the curves beside the footsteps."""
+    following = 0.0
+    if step.following is not None:
+        following = float(np.hypot(*(step.following.middle - step.target.middle)))
+    least = SHORTEST * body.leg_length
+    previous, length = (round(max(float(v), least), 12) for v in lengths)
+    return StepRequest(
+        side=step.stance.side,
+        previous_length=0.0 if step.kind == "start" else previous,
+        length=0.0 if step.kind == "stop" else length,
+        next_length=0.0 if following < 1e-9 else round(max(following, least), 12),
+        duration=round(step.duration, 12),
+        rise=round(float(step.target.position[1] - step.stance.position[1]), 12),
+        kind=step.kind,
+    )
+
+
+def _steady(lengths: Float[np.ndarray, "S"]) -> float:
+    """The length that most steps have, if some have one; editing a step does not change it."""
+    values, counts = np.unique(np.round(lengths, 9), return_counts=True)
+    i = int(counts.argmax())
+    return float(values[i]) if counts[i] >= 3 else 0.0
+
+
+def _rounded(state: WalkerState) -> float | None:
+    return None if state.hip_height is None else round(state.hip_height, 12)
+
+
+def _bend_ends(straight: list[bool], lengths: Float[np.ndarray, "S 2"], anchor: float) -> None:
+    """Where a straight part joins a curve, draw it as the curve is drawn up to a steady step.
+
+    Steps off the grid of the table differ from the straight walk's by a hair; steady steps are
+    on it, so the change from one to the other is made there and nothing jumps.
+    """
+    for i in range(1, len(straight)):
+        if straight[i] and not straight[i - 1] and abs(lengths[i, 0] - anchor) > 1e-9:
+            straight[i] = False
+    for i in range(len(straight) - 2, -1, -1):
+        if straight[i] and not straight[i + 1] and abs(lengths[i, 1] - anchor) > 1e-9:
+            straight[i] = False
+
+
+def _standing(steps: Sequence[PlannedStep]) -> Float[np.ndarray, "S 2 2"]:
+    """How far from beside the stance foot the hips are when it starts and ends in standing."""
+    out = np.zeros((len(steps), 2, 2))
+    for i, step in enumerate(steps):
+        for end, kind, other in ((0, "start", step.origin), (1, "stop", step.target)):
+            if step.kind == kind:
+                out[i, end] = _between(step.stance, other) - step.stance.middle
+    return out
+
+
+def _between(one: Footstep, other: Footstep) -> Float[np.ndarray, "2"]:
+    return 0.5 * (one.position + other.position)[[0, 2]]
+
+
+def _height(body: Body, bent: Bent, flat: Flat2D, center: CenterPath) -> Float[np.ndarray, "M"]:
+    """Height of the hips: the dynamic leg length of the 2D step, [KB92a] Eq. 5.
+
+    With the STANCE hip (erratum D9). At the start of a step the height is the one the step
+    before ended with; the difference is gone by toe-off.
+    """
+    i, up = flat.step, flat.center[:, 1]
+    over_ankle = up - body.foot.ankle_height
+    stands = bent.place[:, 1]
+    aside = ((stands - bent.middle[:, 1]) * _left(bent.direction[:, 1])).sum(-1)
+    half = 0.5 * body.hip_width
+    straight = flat.center[:, 0] ** 2 + (half - bent.sign * aside)[i] ** 2
+
+    def raised(
+        place: np.ndarray, left: np.ndarray, which: np.ndarray, of: np.ndarray
+    ) -> Float[np.ndarray, "m"]:
+        hip = place + (half * bent.sign[which])[:, None] * left - stands[which]
+        square = over_ankle[of] ** 2 + straight[of] - (hip * hip).sum(-1)
+        return np.sqrt(np.maximum(square, (0.5 * over_ankle[of]) ** 2)) - over_ankle[of]
+
+    every = np.arange(len(i))
+    extra = raised(center.place, center.left, i, every)
+    # what the step before ended with: its stance foot was the rear foot of this one
+    start = flat.first
+    aside_rear = ((bent.place[:, 0] - bent.middle[:, 0]) * _left(bent.direction[:, 0])).sum(-1)
+    behind = flat.center[start, 0] + bent.length[:, 0]
+    hip = center.place[start] - (half * bent.sign)[:, None] * center.left[start]
+    hip = hip - bent.place[:, 0]
+    square = behind**2 + (half + bent.sign * aside_rear) ** 2 - (hip * hip).sum(-1)
+    tall = over_ankle[start]
+    reached = np.sqrt(np.maximum(tall**2 + square, (0.5 * tall) ** 2)) - tall
+    reached = np.where(center.resting, extra[start], reached)
+    fade = 1.0 - smoothstep(flat.phase / flat.toe_off[i])
+    return up + extra + (reached - extra[start])[i] * fade
+
+
+def _left(direction: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n 2"]:
+    """x,z of the left."""
+    return np.stack([np.cos(direction), -np.sin(direction)], axis=-1)
+
+
+def _named(error: InfeasibleStepError, step: PlannedStep) -> InfeasibleStepError:
+    """The error with the step's number and foot."""
+    return InfeasibleStepError(
+        step=step.index,
+        side=("left", "right")[step.target.side],
+        needed=error.needed,
+        available=error.available,
+        why="its legs do not reach",
+    )
