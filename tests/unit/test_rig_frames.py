@@ -97,6 +97,18 @@ def test_the_frame_rate_hardly_matters(fps, found):
     assert rms(apart(cycle_angles(found.cycle), cycle_angles(other.cycle))) < 1.0
 
 
+@pytest.mark.parametrize("name", RIGS)
+def test_legs_turn_as_the_puppets_do(name):
+    """Not only the joints are where they were: thigh, shin and foot face as they did."""
+    clip = bare(Puppet().clip(3.0))
+    motion = person_of(RIGS[name](clip)).motion
+    for side in SIDES:
+        for part in ("LowerLeg", "Foot"):
+            own, true = (m.rotations[:, m.skeleton.index(side + part)] for m in (motion, clip))
+            apart_by = 2.0 * np.arccos(np.clip(np.abs((own * true).sum(-1)), 0.0, 1.0))
+            assert np.degrees(apart_by).max() < 3.0, side + part
+
+
 def test_who_leans_leans_on_every_rig():
     """The trunk follows the line of its joints, where the rest pose tells nothing."""
     clip = Puppet().clip(3.0)
