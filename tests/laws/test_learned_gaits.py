@@ -145,7 +145,12 @@ def test_it_keeps_every_promise(path):
 
 
 @pytest.mark.parametrize(
-    ("height", "ratio", "cadence"), [(1.2, 0.4, 90.0), (2.05, 0.8, 95.0), (1.6, 0.6, 120.0)]
+    ("height", "ratio", "cadence"),
+    [
+        (1.2, 0.4, 90.0),
+        pytest.param(2.05, 0.8, 95.0, marks=pytest.mark.slow),
+        pytest.param(1.6, 0.6, 120.0, marks=pytest.mark.slow),
+    ],
 )
 def test_anybody_walks_it(path, height, ratio, cadence):
     body = person(height)

@@ -108,3 +108,15 @@ def test_hips_and_feet_move_on_smoothly(case):
     for side in (0, 1):
         ankle = np.concatenate([planted.ankle[:, side], planted.ankle[:2, side] + ahead])
         assert np.linalg.norm(np.diff(ankle, axis=0), axis=-1).max() < 0.06
+
+
+def test_the_shortest_double_support_is_kept():
+    """Toes of a planted foot leave early, but never before the other foot bears."""
+    found = learn_cycle(person_of(bare(Puppet().clip(5.0))))
+    events = np.array(found.cycle.events)
+    events[0, 3], events[1, 3] = events[1, 0] + 0.02, 0.02
+    cycle = found.cycle.with_(events=events)
+    feet = standing_feet(cycle)
+    planted = plant(cycle, found.body, place=feet.place[:, 1], width=0.1)
+    other = (planted.marks[::-1, 4] - planted.marks[:, 4]) % 1.0
+    np.testing.assert_allclose(planted.marks[:, 3] - other, 0.02, atol=1e-9)
