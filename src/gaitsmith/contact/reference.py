@@ -236,7 +236,9 @@ class ReferenceStep:
 
     def joined(self, start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> ReferenceStep:
         """Copy with the speed of the center changed by ``start`` and ``end``."""
-        return ReferenceStep.trusted(**(self.__dict__ | {"speed_change": (start, end)}))
+        out = object.__new__(ReferenceStep)
+        out.__dict__.update(self.__dict__, speed_change=(start, end))
+        return out
 
     def refined(self) -> ReferenceStep:
         """Itself, with curves fine enough for the contact stage."""

@@ -15,7 +15,7 @@ import numpy as np
 from gaitsmith._checks import one_of
 from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, leftward
 from gaitsmith.errors import InfeasibleError, InvalidInputError
-from gaitsmith.plan.course import course_gaze, course_lean, lean_lever
+from gaitsmith.plan.course import course_change, course_gaze, course_lean, lean_lever
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.lengths import (
     EASED_DURATION,
@@ -152,11 +152,13 @@ def follow(
     direction = path.heading_at(along)
     count = max(2, int(np.ceil((path.length - min(along[0], 0.0)) / PATH_SPACING)) + 1)
     shown = np.linspace(float(min(along[0], 0.0)), path.length, count)
-    lean = _lean(path, along, time, pace, start)
+    lean, drawn_in = _lean(path, along, time, pace, start), 0.0
     middle = path.at(along)
     if body is not None and lean.any():
         outside = leftward(direction)[:, [0, 2]]
         middle = middle - (lean_lever(body) * lean)[:, None] * outside
+        # the feet's own line comes in from outside as the lean goes; the hips stay on the path
+        drawn_in = np.arctan(lean_lever(body) * course_change(lean, middle))
     width = stance.width + _widening(direction, kinds, stance)
     position = np.stack([middle[:, 0], np.zeros(len(along)), middle[:, 1]], axis=-1)
     steady[-2:] &= stop == "walk"  # both feet stand where the way ends
@@ -167,7 +169,7 @@ def follow(
         side=side,
         position=position,
         heading=direction + SIDE_SIGN[side] * np.array(stance.toe_out)[side],
-        direction=direction,
+        direction=direction - drawn_in,
         time=time,
         kinds=tuple(kinds),
         path=path.at(shown),

@@ -47,7 +47,8 @@ class Footstep:
         Change of direction per meter of the walk here.
     lean, gaze
         Tangent of the lean that the curve asks for here; how far the head looks beyond
-        ``direction``, radians; both left positive. Their changes per meter go with them.
+        ``direction``, radians; both left positive. Their first and second changes per meter go
+        with them.
     """
 
     side: int
@@ -57,8 +58,8 @@ class Footstep:
     time: float
     middle: Float[np.ndarray, "2"]
     curvature: float = 0.0
-    lean: tuple[float, float] = (0.0, 0.0)
-    gaze: tuple[float, float] = (0.0, 0.0)
+    lean: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    gaze: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,8 +186,11 @@ class StepPlan:
         assert self.lean is not None
         assert self.gaze is not None
         curvature = course_curvature(self.middle, self.direction)
-        lean = course_change(self.lean, self.middle)
-        gaze = course_change(self.gaze, self.middle)
+        leading = []
+        for values in (self.lean, self.gaze):
+            change = course_change(values, self.middle)
+            further = course_change(change, self.middle)
+            leading.append(np.stack([values, change, further], axis=-1).tolist())
         columns = zip(
             self.side.tolist(),
             self.position,
@@ -195,8 +199,7 @@ class StepPlan:
             self.time.tolist(),
             self.middle,
             curvature.tolist(),
-            zip(self.lean.tolist(), lean.tolist(), strict=True),
-            zip(self.gaze.tolist(), gaze.tolist(), strict=True),
+            *(map(tuple, values) for values in leading),
             strict=True,
         )
         return [Footstep(*row) for row in columns]

@@ -40,7 +40,7 @@ TURN_TIME = 0.35
 
 @dataclass(frozen=True, eq=False)
 class GivenSteps:
-    """Footsteps as given, in order of landing; the first two are where the feet stand.
+    """Footsteps as given, in order of landing; the first two, in any order, stand at the start.
 
     Attributes
     ----------
@@ -71,8 +71,9 @@ class GivenSteps:
                 object.__setattr__(self, name, frozen_array(name, value, shape, dtype))
         if count < 4:
             raise InvalidInputError(
-                f"given footsteps need at least 4 rows: two for the feet that stand, one for a "
-                f"step and one that closes; got {count}"
+                "given footsteps need at least 4 rows: two for the feet that stand, one for a step "
+                f"and one that closes; got {count}"
+                + (", a single step from standing to standing: no walk" if count == 3 else "")
             )
         if count > MOST_STEPS:
             raise InvalidInputError(f"more than {MOST_STEPS} footsteps; walk them in parts")
@@ -93,7 +94,8 @@ def plan_given(given: GivenSteps, *, body: Body, pace: Pace, ground: Ground) -> 
         If sides do not alternate, times do not rise, or a height is not on the ground.
     """
     _check_sides(given.side)
-    heading = _direction(given.heading)
+    given = _standing_first(given)
+    heading = np.unwrap(given.heading)
     direction = 0.5 * heading
     direction[1:-1] += 0.25 * (heading[2:] + heading[:-2])
     direction[0] += 0.5 * heading[1]
@@ -152,9 +154,13 @@ def _check_course(plan: StepPlan) -> None:
             )
 
 
-def _direction(heading: Float[np.ndarray, "N"]) -> Float[np.ndarray, "N"]:
-    """Headings without jumps of a full turn."""
-    return np.unwrap(heading)
+def _standing_first(given: GivenSteps) -> GivenSteps:
+    """The same; of the feet that stand, the one that steps first comes first."""
+    if given.side[2] != given.side[1]:
+        return given
+    order = np.array([1, 0, *range(2, len(given.side))])
+    columns = (given.side, given.place, given.heading, given.height, given.time)
+    return GivenSteps(*(None if c is None else c[order] for c in columns))  # type: ignore[arg-type]
 
 
 def _check_sides(side: Int[np.ndarray, "N"]) -> None:
@@ -162,7 +168,7 @@ def _check_sides(side: Int[np.ndarray, "N"]) -> None:
         raise InvalidInputError(
             f"the first two footsteps must be a left and a right one, both are {SIDES[side[0]]}"
         )
-    same = np.flatnonzero(side[2:] == side[1:-1]) + 1
+    same = np.flatnonzero(side[3:] == side[2:-1]) + 2
     if same.size:
         i = int(same[0])
         raise InvalidInputError(

@@ -231,7 +231,7 @@ def load_footsteps(path: str | FilePath) -> GivenSteps:
 def _check_row(path: str | FilePath, line: int, found: dict[str, list[float]]) -> None:
     """Alternation and times, where a line can be named."""
     side, time = found["side"], found.get("time")
-    if len(side) > 1 and side[-1] == side[-2]:
+    if len(side) > 1 and side[-1] == side[-2] and len(side) != 3:  # either foot may step first
         which = "LR"[int(side[-1])]
         raise FileFormatError(
             path, f"sides must alternate, this is {which} after {which}", line=line

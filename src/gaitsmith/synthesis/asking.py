@@ -255,5 +255,6 @@ class _Grid:
                 if weight:
                     own += np.multiply(tables[which], weight, out=part)
         return [
-            Answer(0.0, 0.0, model.phase, model.toe_off, own.T, model.bearing) for own in curves
+            Answer(0.0, 0.0, model.phase, model.toe_off, curves[k].T, model.bearing)
+            for k in range(len(curves))
         ]

@@ -39,8 +39,8 @@ class Bent:
     direction: Float[np.ndarray, "S 3"]
     curvature: Float[np.ndarray, "S 3"]
     middle: Float[np.ndarray, "S 3 2"]
-    lean: Float[np.ndarray, "S 3 2"]
-    gaze: Float[np.ndarray, "S 3 2"]
+    lean: Float[np.ndarray, "S 3 3"]
+    gaze: Float[np.ndarray, "S 3 3"]
 
     @staticmethod
     def of(steps: Sequence[PlannedStep]) -> Bent:
@@ -73,8 +73,8 @@ class Bent:
             direction=rows[..., 5],
             curvature=rows[..., 6],
             middle=rows[..., 2:4],
-            lean=rows[..., 7:9],
-            gaze=rows[..., 9:11],
+            lean=rows[..., 7:10],
+            gaze=rows[..., 10:13],
         )
 
     @cached_property

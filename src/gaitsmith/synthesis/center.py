@@ -12,7 +12,7 @@ from gaitsmith.geometry.splines import PlaneCurves
 from gaitsmith.synthesis.bent import pieces
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Float, Int
 
     from gaitsmith.synthesis.bent import Bent, Flat2D
 
@@ -65,40 +65,48 @@ def track(
     over = np.where(along > whole, along - whole, np.minimum(along, 0.0))
     place = curve.at(u) + over[:, None] * way
 
-    chord = np.sqrt((curve.coefficients[1] ** 2).sum(-1))
-
-    def led(values: Float[np.ndarray, "S 3 2"]) -> Float[np.ndarray, "M"]:
-        first = np.where(later[:, None], values[i, 1], values[i, 0])
-        last = np.where(later[:, None], values[i, 2], values[i, 1])
-        begins, ends = chord * first[:, 1], chord * last[:, 1]
-        v = 1.0 - u
-        rise = last[:, 0] - first[:, 0]
-        return first[:, 0] + u * u * (3.0 - 2.0 * u) * rise + u * v * (v * begins - u * ends)
-
-    def led_rate(values: Float[np.ndarray, "S 3 2"]) -> Float[np.ndarray, "M"]:
-        """Change per meter."""
-        first = np.where(later[:, None], values[i, 1], values[i, 0])
-        last = np.where(later[:, None], values[i, 2], values[i, 1])
-        v, size = 1.0 - u, np.maximum(chord, 1e-9)
-        rise = (last[:, 0] - first[:, 0]) / size
-        slope = (
-            6.0 * u * v * rise
-            + v * (1.0 - 3.0 * u) * first[:, 1]
-            + u * (3.0 * u - 2.0) * last[:, 1]
-        )
-        return np.where(chord > 1e-6, slope, 0.0)
-
-    lean, gaze = led(bent.lean), led(bent.gaze)
+    chords = np.sqrt((both.coefficients[1] ** 2).sum(-1))
+    lean, lean_rate = _led(bent.lean, chords, rows, u)
+    gaze, _ = _led(bent.gaze, chords, rows, u)
     left = np.stack([np.cos(heading), -np.sin(heading)], axis=-1)
     place = place + (offset * lean)[:, None] * left
     # hips that draw inside or come back face where they go themselves
-    heading = heading + np.arctan(offset * led_rate(bent.lean))
+    heading = heading + np.arctan(offset * lean_rate)
     resting = np.any(standing[:, 0] != 0.0, axis=-1) | (bent.length[:, 0] < 1e-9)
     if standing.any():
         begins = 1.0 - smoothstep(flat.phase / STANDING_SHARE)
         ends = smoothstep((flat.phase - 1.0 + STANDING_SHARE) / STANDING_SHARE)
         place = place + begins[:, None] * standing[i, 0] + ends[:, None] * standing[i, 1]
     return CenterPath(place, heading, left, lean, gaze, resting)
+
+
+def _led(
+    values: Float[np.ndarray, "S 3 3"],
+    chords: Float[np.ndarray, "2S"],
+    row: Int[np.ndarray, "M"],
+    u: Float[np.ndarray, "M"],
+) -> tuple[Float[np.ndarray, "M"], Float[np.ndarray, "M"]]:
+    """What leads along the curves before and after all steps, and its change per meter.
+
+    ``values`` and their first and second changes per meter are given at the footsteps; between
+    them goes the polynomial that the curves are, so that a lean and feet that are set outside by
+    as much cancel.
+    """
+    if not values.any():
+        return np.zeros(len(u)), np.zeros(len(u))
+    first = np.concatenate([values[:, 0], values[:, 1]])
+    last = np.concatenate([values[:, 1], values[:, 2]])
+    powers = np.stack([np.ones_like(chords), chords, chords**2], axis=-1)
+    a, b = first * powers, last * powers
+    made = PlaneCurves.quintic(a[:, :1], b[:, :1], a[:, 1:2], b[:, 1:2], (a[:, 2:], b[:, 2:]))
+    c = np.take(made.coefficients[..., 0], row, axis=1)
+    size = np.where(chords > 1e-6, 1.0 / np.maximum(chords, 1e-9), 0.0)[row]
+    value, slope = c[-1], 5.0 * c[-1]
+    for k in range(4, -1, -1):
+        value = c[k] + u * value
+    for k in range(4, 0, -1):
+        slope = k * c[k] + u * slope
+    return value, slope * size
 
 
 def anchored(
