@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 APART = 0.085
 #: The push is sought in such parts (m), so many times.
 PUSH, MOST_PUSHES = 0.015, 13
+#: Meters that the feet must come farther apart per meter of push, at least.
+ODD = 0.2
 #: Turn (radians) and change of width (m) of a step from which it is fully kept so.
 TURNS, SHIFTS = 0.10, 0.02
 
@@ -117,9 +119,13 @@ class SwingPath:
             if k:  # between the last two tries
                 share = missing / np.maximum(missing - short, 1e-9)
                 met = push - PUSH * (1.0 - share)
-                best, least = np.where(done, met, best), np.where(done, -1.0, least)
-            better = (short > 0.0) & (short < least - 1e-4)
-            best, least = np.where(better, push, best), np.where(better, short, least)
+            else:
+                met = push
+            # a push that hardly helps would only look odd
+            way = np.where(done, met, push)
+            cost = np.where(short > -np.inf, np.maximum(short, 0.0) + ODD * way, np.inf)
+            better = cost < least - 1e-4
+            best, least = np.where(better, way, best), np.where(better, cost, least)
             search &= ~done[i]
             if not search.any():
                 break
