@@ -10,7 +10,7 @@ import numpy as np
 from gaitsmith.contact import StepCurves, plan_contact
 from gaitsmith.contact.reference import CURVES
 from gaitsmith.synthesis.clock import Clock
-from gaitsmith.synthesis.join import join_speeds
+from gaitsmith.synthesis.join import join_all
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from gaitsmith.contact import ContactPlan, Poses, ReferenceStep
     from gaitsmith.ground import Ground
     from gaitsmith.plan.footsteps import PlannedStep, StepPlan
+    from gaitsmith.plan.timeline import Timeline
 
 
 @dataclass(frozen=True)
@@ -32,9 +33,38 @@ class WalkerState:
     hip_height
         Height of the hips over the stance foot's floor as the last step left them, before any
         correction, meters; None at the start of a walk.
+    local
+        How a local step left the walker; None: in standing.
     """
 
     hip_height: float | None = None
+    local: LocalState | None = None
+
+
+@dataclass(frozen=True)
+class LocalState:
+    """How a local step leaves the walker: [KB93] section 3's state, of what is not in the feet.
+
+    Attributes
+    ----------
+    center
+        x, z of the hips, meters.
+    speed
+        Their velocity, meters per second.
+    heading, gaze
+        Of the pelvis and of the gaze, radians.
+    pitch
+        Of the soles of [left, right], toes up positive.
+    arms
+        Forward swing of [left, right] and how far both are held apart, beyond rest, radians.
+    """
+
+    center: tuple[float, float]
+    speed: tuple[float, float]
+    heading: float
+    gaze: float
+    pitch: tuple[float, float]
+    arms: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @runtime_checkable
@@ -101,7 +131,7 @@ class TabledStep:
 class PreparedWalk:
     """Steps, their common contact plan and the clock: a walk that can be looked at any time."""
 
-    plan: StepPlan
+    plan: StepPlan | Timeline
     contact: ContactPlan
     clock: Clock
 
@@ -116,7 +146,7 @@ class PreparedWalk:
 
 
 def prepare_walk(
-    plan: StepPlan,
+    plan: StepPlan | Timeline,
     generator: StepGenerator,
     body: Body,
     ground: Ground,
@@ -128,9 +158,10 @@ def prepare_walk(
     ``rest`` seconds of standing follow a walk that ends in standing.
     """
     prepared = _prepared(plan.steps(), generator, body)
-    clock = Clock.of(plan, rest=rest if plan.kinds[-1] == "stop" else 0.0)
-    references = join_speeds([p.reference for p in prepared])
-    if plan.kinds[-1] == "stop":
+    stands = plan.kinds[-1] not in ("start", "walk")
+    clock = Clock.of(plan, rest=rest if stands else 0.0)
+    references = join_all([p.reference for p in prepared], plan.kinds)
+    if stands:
         references.append(_stand_still(references[-1]))
     return PreparedWalk(plan, plan_contact(references, body, ground), clock)
 

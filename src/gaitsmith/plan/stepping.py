@@ -1,0 +1,128 @@
+"""Where feet go in local steps and turns, [KB93] sections 4 and 6."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from gaitsmith._checks import one_of
+from gaitsmith.conventions import LEFT, SIDE_SIGN, SIDES, ahead, leftward
+from gaitsmith.errors import InfeasibleError
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+    Region = Literal["forward", "lateral", "backward"]
+
+#: nu of [KB93] Figure 2; within TOLERANCE of its lines a step whose foot points within PARALLEL
+#: of the stance foot is a lateral one, others are not.
+NU, TOLERANCE, PARALLEL = (float(np.radians(a)) for a in (60.0, 3.0, 20.0))
+#: Largest turn of one turnaround.
+LARGEST_TURN = float(np.radians(100.0))
+#: Farthest that one pair of steps moves the body, over the leg length (0.5-0.7 m forward,
+#: 0.35-0.5 m back, 0.58-0.65 m aside from standing).
+FARTHEST = {"forward": 0.75, "back": 0.50, "left": 0.72, "right": 0.72}
+TURNAROUNDS = ("dynamic", "stationary")
+
+
+def step_region(angle: float, turned: float = 0.0) -> Region | None:
+    """Kind of a local step by where it leads, [KB93] Figure 2; None: the legs would cross.
+
+    Parameters
+    ----------
+    angle
+        Direction of the new heel from the stance heel against the stance foot's direction,
+        radians, positive to the side of the stepping foot.
+    turned
+        Direction of the new foot against that of the stance foot.
+    """
+    angle = float(np.arctan2(np.sin(angle), np.cos(angle)))
+    parallel = abs(np.arctan2(np.sin(turned), np.cos(turned))) < PARALLEL
+    for line, beyond in ((NU, "forward"), (np.pi - NU, "backward")):
+        if abs(angle - line) <= TOLERANCE:
+            return "lateral" if parallel else beyond  # type: ignore[return-value]
+    if -0.5 * NU <= angle < NU:
+        return "forward"
+    if NU <= angle <= np.pi - NU:
+        return "lateral"
+    if angle > np.pi - NU or angle < -(np.pi - 0.5 * NU):
+        return "backward"
+    return None
+
+
+def classify(
+    stance: Float[np.ndarray, "3"],
+    direction: float,
+    target: Float[np.ndarray, "3"],
+    turned: float,
+    side: int,
+) -> Region:
+    """Kind of the step of foot ``side`` whose heel goes to ``target``.
+
+    ``stance`` is the heel that stays, ``direction`` where that foot points, ``turned`` how far
+    the new foot points to the left of it.
+
+    Raises
+    ------
+    InfeasibleError
+        If the legs would cross.
+    """
+    way = np.asarray(target) - np.asarray(stance)
+    sign = float(SIDE_SIGN[side])
+    angle = float(np.arctan2(sign * (way @ leftward(direction)), way @ ahead(direction)))
+    region = step_region(angle, turned)
+    if region is None:
+        raise InfeasibleError(
+            f"the {SIDES[side]} foot would land {np.degrees(angle):.0f} deg to its own side of "
+            f"where the {SIDES[1 - side]} foot points, across it: the legs would cross. "
+            f"It may land from {np.degrees(-0.5 * NU):.0f} deg over its own side to "
+            f"{np.degrees(-(np.pi - 0.5 * NU)):.0f} deg; step with the other foot first"
+        )
+    return region
+
+
+def turnaround(
+    pivot: Float[np.ndarray, "3"],
+    direction: float,
+    angle: float,
+    *,
+    hip_width: float,
+    kind: str = "stationary",
+) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """Where the two feet of a turn land, [KB93] section 6: first the one on the turn's side.
+
+    Parameters
+    ----------
+    pivot, direction
+        N and direction of the foot that stays at first: the right one in a turn to the left.
+    angle
+        Radians, left positive, at most 100 deg: turn repeatedly for more.
+    hip_width
+        2 lambda.
+    kind
+        ``"dynamic"``: the second foot lands 2 lambda ahead, ready to walk. ``"stationary"``:
+        side by side.
+
+    Notes
+    -----
+    "2 lambda back and left of the right foot" is read in the frame of the foot that stays: in
+    that of the goal the foot would cross behind it.
+    """
+    one_of("kind", kind, TURNAROUNDS)
+    if not 0.0 < abs(angle) <= LARGEST_TURN + 1e-12:
+        raise InfeasibleError(
+            f"one turnaround turns by up to {np.degrees(LARGEST_TURN):.0f} deg, got "
+            f"{np.degrees(angle):.1f} deg; turn repeatedly"
+        )
+    sign, goal = float(np.sign(angle)), direction + angle
+    first = pivot + hip_width * (sign * leftward(direction) - ahead(direction))
+    second = first - hip_width * sign * leftward(goal)
+    if kind == "dynamic":
+        second = second + hip_width * ahead(goal)
+    return first, second
+
+
+def turning_side(angle: float) -> int:
+    """The foot that steps first: the one on the side turned to."""
+    return LEFT if angle > 0.0 else 1 - LEFT
