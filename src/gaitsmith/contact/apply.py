@@ -99,6 +99,7 @@ class ContactPlan:
             width += flat.shape[1]
         table, rates = np.concatenate(blocks, axis=1), np.concatenate(slopes, axis=1)
         _leave_as_rolled(walk, stands, body, rates, columns)
+        rates[:, columns["foot_heading"]][~free] = 0.0  # a foot that bears does not turn
         return ContactPlan(
             body=body,
             at=walk.at,

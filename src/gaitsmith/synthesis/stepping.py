@@ -16,7 +16,7 @@ from gaitsmith.body.sole import rolled_ankle
 from gaitsmith.contact import ReferenceStep, StepCurves
 from gaitsmith.conventions import LOCAL_KINDS, SIDE_SIGN, UP, ahead, leftward
 from gaitsmith.errors import InvalidInputError
-from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.geometry.curves import end_slope_correction, parabola_slopes, smoothstep
 from gaitsmith.plan.footsteps import LocalStep
 from gaitsmith.synthesis.local_curves import (
     FootAngles,
@@ -47,15 +47,18 @@ if TYPE_CHECKING:
 
 #: Samples of a step before and after toe-off.
 SAMPLES = 40
+#: Samples of standing this near to its ends.
+NEAR = 1e-3
 #: Shortest step that the underlying walk is asked for, meters, and longest, over the leg.
 SHORTEST, LONGEST = 0.05, 1.0
 #: How far the hips go over the stance foot before the other leaves, of the way from where they
 #: would be: 4-6 of 7-14 cm as people start (one person), less aside, where the push is from the
 #: leg that stays.
 OVER = {"forward": 0.66, "backward": 0.66, "lateral": 0.50, "turn": 0.66}
+CLOSING_OVER = {"forward": 0.50, "backward": 0.45, "lateral": 0.15, "turn": 0.66}
 #: Phase at which the swing foot leaves: first steps from standing shift the weight for longer.
 TOE_OFF = {"forward": 0.42, "backward": 0.42, "lateral": 0.34, "turn": 0.40}
-CLOSING_TOE_OFF = {"forward": 0.34, "backward": 0.36, "lateral": 0.24, "turn": 0.34}
+CLOSING_TOE_OFF = {"forward": 0.34, "backward": 0.36, "lateral": 0.20, "turn": 0.34}
 #: Farthest that the pelvis turns beyond the middle of the feet, radians ([KB93] has 0.5 alpha,
 #: 27 deg for a step of 0.3 m), and share of alpha.
 PELVIS_TURN, ALPHA_SHARE = float(np.radians(10.0)), 0.5
@@ -63,7 +66,7 @@ PELVIS_TURN, ALPHA_SHARE = float(np.radians(10.0)), 0.5
 THROUGH = {"forward": 1.5, "backward": 1.4, "lateral": 1.6, "turn": 0.8}
 #: Reach of straight legs, over their length; less of it at the widest straddle: people drop by
 #: 10-13 cm at 0.6 m.
-STANDING_REACH, STRADDLE = 0.998, 0.11
+STANDING_REACH, STRADDLE = 0.998, 0.055
 #: Drop of the pelvis on the swing side, lean of the trunk over the stance foot, radians.
 LIST, OVER_LEAN = float(np.radians(2.5)), float(np.radians(2.0))
 #: Arms: swing at a step of half a leg, held apart in a lateral step, radians.
@@ -159,7 +162,8 @@ class LocalGenerator:
 
         shift = over_stance(t, s.toe_off)
         stands = s.stance.position[[0, 2]]
-        place = base + (OVER[step.kind] * shift)[:, None] * (stands - base)
+        over = (CLOSING_OVER if s.how.closes else OVER)[step.kind]
+        place = base + (over * shift)[:, None] * (stands - base)
         center = np.stack([place[:, 0], s.stance.position[1] + height, place[:, 1]], axis=-1)
         pelvis = np.tile(s.rest.pelvis, (len(t), 1))
         # positive about z: the left side up, so the swing side comes down
@@ -205,6 +209,8 @@ class LocalGenerator:
     ) -> PreparedStep:
         """Nothing moves but the gaze."""
         t = np.linspace(0.0, 1.0, SAMPLES)
+        # close to its ends, so that no speed of a walk beside it leaks in
+        t = np.sort(np.append(t, [NEAR, 1.0 - NEAR]))
         gaze = begin.gaze if how.gaze is None else how.gaze
         looks = glanced(t, gaze, how.glances)
         heading = np.full(len(t), begin.heading)
@@ -301,9 +307,11 @@ def _usual_angles(s: _Step) -> tuple[float, float, float]:
         return (0.0, 0.0, 0.0)
     far = float(smoothstep(np.array(min(max(abs(there), 0.6 * travel) / (0.5 * leg), 1.0))))
     if kind == "lateral":
-        return (0.0, 0.0, -0.15)
+        push = 0.3 * min(travel / (0.7 * leg), 1.0) ** 2 if s.how.closes else 0.0
+        return (0.0, 0.0, -0.15 - push)
     if kind == "backward":
-        return (0.0, 0.0, -0.12 * max(far, 0.5)) if s.how.closes else (0.0, -0.12 * far, -0.25 * max(far, 0.3))
+        # as a forward step reversed: toes land first, the heel leaves last
+        return (0.0, 0.0, 0.2 * far) if s.how.closes else (0.0, -0.2 * far, -0.25 * max(far, 0.3))
     if s.how.closes:
         return (0.0, 0.0, -0.6 * mu3 * max(far, 0.25))
     return (-0.25 * far, mu2 * far, -0.6 * mu3 * max(0.6 * far, 0.25))
@@ -352,19 +360,21 @@ def _height(
     """Height of the hips over the stance foot's floor, and where it ends."""
     body, step, t = s.body, s.step, s.t
     end = s.rest.height if s.how.closes else _end_height(s, base[-1], heading[-1], angles)
+    walked = np.interp(t, s.walked.phase, s.walked.center[:, 1])
     if step.kind == "forward":
-        walked = np.interp(t, s.walked.phase, s.walked.center[:, 1])
-        return forward_height(t, walked, s.height, end), end
-    if step.kind == "backward":
-        walked = np.interp(1.0 - t, s.walked.phase, s.walked.center[:, 1])[::-1]
-        back = np.interp(1.0 - t, t, np.interp(t, s.walked.phase, s.walked.center[:, 1]))
-        return forward_height(t, back, s.height, end), end
-    if step.kind == "lateral":
-        stance = s.stance
-        hip = base - s.sign * 0.5 * body.hip_width * leftward(heading)[:, [0, 2]]
-        distance = np.linalg.norm(hip - stance.position[[0, 2]], axis=-1)
-        return lateral_height(t, distance, s.height, end, body.foot.ankle_height), end
-    return s.height + (end - s.height) * smoothstep(t), end
+        height = forward_height(t, walked, s.height, end)
+    elif step.kind == "backward":
+        height = backward_height(t, walked, s.height, end)
+    elif step.kind == "lateral":
+        hip = s.sign * 0.5 * body.hip_width * leftward(heading)[:, [0, 2]]
+        way = base[0] + smoothstep(t)[:, None] * (base[-1] - base[0])
+        distance = np.linalg.norm(way - hip - s.stance.position[[0, 2]], axis=-1)
+        height = lateral_height(t, distance, s.height, end, body.foot.ankle_height)
+    else:
+        height = s.height + (end - s.height) * smoothstep(t)
+    # steps meet, and end in standing, with hips that neither rise nor fall
+    slopes = parabola_slopes(t, height[:, None])
+    return height + end_slope_correction(t, -slopes[:1], -slopes[-1:])[:, 0], end
 
 
 def _end_height(
