@@ -9,9 +9,14 @@ import numpy as np
 from gaitsmith._checks import one_of
 from gaitsmith.conventions import LEFT, SIDE_SIGN, SIDES, ahead, leftward
 from gaitsmith.errors import InfeasibleError
+from gaitsmith.geometry.planar import feet_apart
+from gaitsmith.plan.footsteps import PlannedStep
 
 if TYPE_CHECKING:
     from jaxtyping import Float
+
+    from gaitsmith.body.body import Foot
+    from gaitsmith.plan.footsteps import Footstep, LocalStep
 
     Region = Literal["forward", "lateral", "backward"]
 
@@ -23,6 +28,8 @@ LARGEST_TURN = float(np.radians(100.0))
 #: Farthest that one pair of steps moves the body, over the leg length (0.5-0.7 m forward,
 #: 0.35-0.5 m back, 0.58-0.65 m aside from standing).
 FARTHEST = {"forward": 0.75, "back": 0.50, "left": 0.72, "right": 0.72}
+#: Axes of feet that stand nearer than this touch, meters.
+TOUCHING = 0.045
 TURNAROUNDS = ("dynamic", "stationary")
 
 
@@ -80,6 +87,48 @@ def classify(
             f"{np.degrees(-(np.pi - 0.5 * NU)):.0f} deg; step with the other foot first"
         )
     return region
+
+
+def local_step(
+    stance: Footstep,
+    origin: Footstep,
+    target: Footstep,
+    duration: float,
+    how: LocalStep | None = None,
+    *,
+    foot: Foot,
+    following: Footstep | None = None,
+) -> PlannedStep:
+    """One step of [KB93] on its own: ``specs`` of Eq. 1 as a planned step.
+
+    ``footpos``, ``footdir`` and ``left_or_right`` are in ``target``, the rest in ``how``.
+    ``direction`` of a footstep is where the foot points but for its toe-out; the kind is read
+    from it.
+
+    Raises
+    ------
+    InfeasibleError
+        If the legs would cross, or the feet be set one on the other.
+    """
+    heels = [f.position - foot.heel * ahead(f.direction) for f in (stance, target)]
+    turned = target.direction - stance.direction
+    kind = classify(heels[0], stance.direction, heels[1], turned, target.side)
+    apart = float(
+        feet_apart(
+            target.position[None, [0, 2]],
+            np.array([target.heading]),
+            stance.position[None, [0, 2]],
+            np.array([stance.heading]),
+            back=foot.heel,
+            front=foot.ball + foot.toes,
+        )[0]
+    )
+    if apart < TOUCHING:
+        raise InfeasibleError(
+            f"the {SIDES[target.side]} foot would be set on the {SIDES[stance.side]} one: their "
+            f"axes would be {apart:.3f} m apart, feet need {TOUCHING:.3f} m"
+        )
+    return PlannedStep(0, kind, stance, origin, target, None, following, duration, how)
 
 
 def turnaround(

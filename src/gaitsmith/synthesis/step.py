@@ -9,6 +9,8 @@ import numpy as np
 
 from gaitsmith.contact import StepCurves, plan_contact
 from gaitsmith.contact.reference import CURVES
+from gaitsmith.plan.timeline import Timeline
+from gaitsmith.synthesis.attention import Attention
 from gaitsmith.synthesis.clock import Clock
 from gaitsmith.synthesis.join import join_all
 
@@ -21,7 +23,6 @@ if TYPE_CHECKING:
     from gaitsmith.contact import ContactPlan, Poses, ReferenceStep
     from gaitsmith.ground import Ground
     from gaitsmith.plan.footsteps import PlannedStep, StepPlan
-    from gaitsmith.plan.timeline import Timeline
 
 
 @dataclass(frozen=True)
@@ -134,6 +135,7 @@ class PreparedWalk:
     plan: StepPlan | Timeline
     contact: ContactPlan
     clock: Clock
+    attention: Attention | None = None
 
     @property
     def duration(self) -> float:
@@ -142,7 +144,8 @@ class PreparedWalk:
 
     def poses(self, times: Float[np.ndarray, "F"]) -> Poses:
         """Poses at ``times`` in seconds, in [0, duration], in any order."""
-        return self.contact.poses(self.clock.walk_phase(times))
+        poses = self.contact.poses(self.clock.walk_phase(times))
+        return poses if self.attention is None else self.attention.applied(times, poses)
 
 
 def prepare_walk(
@@ -163,7 +166,8 @@ def prepare_walk(
     references = join_all([p.reference for p in prepared], plan.kinds)
     if stands:
         references.append(_stand_still(references[-1]))
-    return PreparedWalk(plan, plan_contact(references, body, ground), clock)
+    attention = Attention(body, plan.looks, plan.leans) if isinstance(plan, Timeline) else None
+    return PreparedWalk(plan, plan_contact(references, body, ground), clock, attention)
 
 
 def _prepared(steps: list[PlannedStep], generator: StepGenerator, body: Body) -> list[PreparedStep]:

@@ -133,7 +133,7 @@ class LocalGenerator:
         rest, how = self._rest(body), step.local or LocalStep()
         begin, height = _beginning(state, step, rest)
         if step.kind == "stand":
-            return self._stand(body, step, how, rest, begin)
+            return self._stand(body, step, how, rest, begin, height)
         usual = CLOSING_TOE_OFF if how.closes else TOE_OFF
         toe_off = how.toe_off or usual[step.kind]
         t = np.concatenate(
@@ -205,7 +205,7 @@ class LocalGenerator:
         )
 
     def _stand(
-        self, body: Body, step: PlannedStep, how: LocalStep, rest: Rest, begin: LocalState
+        self, body: Body, step: PlannedStep, how: LocalStep, rest: Rest, begin: LocalState, height: float
     ) -> PreparedStep:
         """Nothing moves but the gaze."""
         t = np.linspace(0.0, 1.0, SAMPLES)
@@ -223,7 +223,7 @@ class LocalGenerator:
         )
         curves = StepCurves(
             phase=t,
-            center=np.tile([begin.center[0], level + rest.height, begin.center[1]], (len(t), 1)),
+            center=np.tile([begin.center[0], level + height, begin.center[1]], (len(t), 1)),
             heading=heading,
             pelvis=np.tile(rest.pelvis, (len(t), 1)),
             ankle=np.tile(ankle, (len(t), 1, 1)),
@@ -237,7 +237,7 @@ class LocalGenerator:
             begin.center, (0.0, 0.0), begin.heading, float(looks[-1]), (0.0, 0.0), begin.arms
         )
         reference = _reference(step, curves, np.zeros(3), 1.0)
-        end = WalkerState(hip_height=None, local=after)
+        end = WalkerState(hip_height=height, local=after)
         return TabledStep(step.duration, end, reference, body, self._ground)
 
 
@@ -359,7 +359,7 @@ def _height(
 ) -> tuple[Float[np.ndarray, "T"], float]:
     """Height of the hips over the stance foot's floor, and where it ends."""
     body, step, t = s.body, s.step, s.t
-    end = s.rest.height if s.how.closes else _end_height(s, base[-1], heading[-1], angles)
+    end = _end_height(s, base[-1], heading[-1], angles)
     walked = np.interp(t, s.walked.phase, s.walked.center[:, 1])
     if step.kind == "forward":
         height = forward_height(t, walked, s.height, end)
@@ -401,7 +401,9 @@ def _end_height(
     straight = STANDING_REACH * body.leg_length
     stance = reached(step.stance, angles[0], straight)
     swing = straight
-    if step.kind in ("forward", "backward"):
+    if s.how.closes:
+        pass
+    elif step.kind in ("forward", "backward"):
         last = -1 if step.kind == "forward" else 0
         leg = 1 if step.kind == "forward" else 0
         gap = s.walked.center[last] - s.walked.ankle[last, leg]
