@@ -19,6 +19,7 @@ from gaitsmith.ground import GROUNDS
 from gaitsmith.learning import body_of, gait_from
 from gaitsmith.plan.director import Manners, direct
 from gaitsmith.plan.follow import curve_share, follow
+from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.given import GivenSteps, plan_given
 from gaitsmith.plan.lengths import Stance
 from gaitsmith.plan.pace import UNUSUAL_FROUDE, Pace, choose_pace, froude
@@ -28,9 +29,10 @@ from gaitsmith.plan.script import Script
 from gaitsmith.plan.timeline import Timeline
 from gaitsmith.plan.where import read_where
 from gaitsmith.synthesis.curved import BANKINGS, CurvedGenerator
+from gaitsmith.synthesis.mixed import MixedGenerator
 from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
-from gaitsmith.synthesis.stepping import LocalGenerator, MixedGenerator
+from gaitsmith.synthesis.stepping import LocalGenerator
 from gaitsmith.synthesis.upper_body import Manner
 from gaitsmith.walks.generalize import LONG_STEP, check_step_length
 
@@ -41,7 +43,6 @@ if TYPE_CHECKING:
     from gaitsmith.body.body import Body
     from gaitsmith.ground import Ground
     from gaitsmith.motion.motion import Motion
-    from gaitsmith.plan.footsteps import StepPlan
     from gaitsmith.plan.script import Action
     from gaitsmith.plan.where import PathLike, StepsLike
     from gaitsmith.synthesis.gaits import Habits
@@ -230,13 +231,11 @@ def walk(
     )
     outside = banking == "body"
     plan = _plan(where, who, pace, stance, rhythm, ground, start, stop, keep=keep, outside=outside)
-    if step_length is not None and isinstance(where, WalkPath):
+    if step_length is not None and isinstance(where, WalkPath) and isinstance(plan, StepPlan):
         _warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
     generator = CurvedGenerator(style.walk, ground, style.overlay, banking=banking)
     if isinstance(plan, Timeline):
-        generator = MixedGenerator(
-            generator, LocalGenerator(style.walk, ground, style.overlay)
-        )
+        generator = MixedGenerator(generator, LocalGenerator(style.walk, ground, style.overlay))
     prepared = prepare_walk(plan, generator, who, ground, rest=REST)
     return sample_walk(prepared, who, ground, fps=fps, recipe=recipe)
 

@@ -11,7 +11,6 @@ from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, ahead, leftward
 from gaitsmith.errors import InfeasibleError
 from gaitsmith.plan.follow import follow
 from gaitsmith.plan.footsteps import Footstep, LocalStep, PlannedStep
-from gaitsmith.plan.paths import Path
 from gaitsmith.plan.script import (
     Action,
     BeAt,
@@ -26,6 +25,7 @@ from gaitsmith.plan.script import (
 )
 from gaitsmith.plan.stepping import FARTHEST, LARGEST_TURN, classify, turnaround, turning_side
 from gaitsmith.plan.timeline import Timeline
+from gaitsmith.plan.ways import NO_WAY, goals_of, on_floor, path_through, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,12 +55,8 @@ AFTER_WALK, BEFORE_WALK = 0.25, 0.12
 TURN_FIRST = float(np.radians(35.0))
 #: A walk from point to point is stopped where it would turn farther than this.
 LARGEST_CORNER = float(np.radians(100.0))
-#: Straight legs of a walk bend only so far from their ends, meters.
-CORNER = 0.8
 #: Seconds that a lean and a last look take.
 LEAN_SECONDS, LOOK_SECONDS = 0.9, 0.8
-#: Ways shorter than this are none, meters.
-NO_WAY = 1e-6
 #: ``be at`` walks where it is farther than this, meters; nearer it steps.
 STEP_ONLY = 0.9
 _KINDS: dict[str, StepKind] = {
@@ -142,7 +138,7 @@ class _Director:
             self._turn(action.angle, walks_on=isinstance(after, WalkTo | Follow))
         elif isinstance(action, Face):
             self._turn(
-                _wrapped(action.heading - self.facing), walks_on=isinstance(after, WalkTo | Follow)
+                wrapped(action.heading - self.facing), walks_on=isinstance(after, WalkTo | Follow)
             )
         elif isinstance(action, Stand):
             self._stand(action.seconds)
@@ -175,7 +171,9 @@ class _Director:
 
     def _walk_all(self, group: Sequence[WalkTo | Follow]) -> None:
         """Walk on from point to point without a stop, but where it turns too far."""
-        ways = [[np.array(p) for p in (a.points if isinstance(a, Follow) else [a.point])] for a in group]
+        ways = [
+            [np.array(p) for p in (a.points if isinstance(a, Follow) else [a.point])] for a in group
+        ]
         smooth = [isinstance(a, Follow) for a in group]
         run: list[tuple[list[Float[np.ndarray, "2"]], bool]] = []
         here = self.middle
@@ -185,7 +183,7 @@ class _Director:
             if np.linalg.norm(gap) < NO_WAY and len(way) == 1:
                 continue
             towards = float(np.arctan2(*gap))
-            if heading is not None and abs(_wrapped(towards - heading)) > LARGEST_CORNER:
+            if heading is not None and abs(wrapped(towards - heading)) > LARGEST_CORNER:
                 self._walk(run)
                 run = []
             run.append((way, soft))
@@ -196,16 +194,16 @@ class _Director:
             self._walk(run)
 
     def _walk(self, run: Sequence[tuple[list[Float[np.ndarray, "2"]], bool]]) -> None:
-        path = _path_through(self.middle, run)
-        aside = _wrapped(float(path.heading[0]) - self.facing)
+        path = path_through(self.middle, run)
+        aside = wrapped(float(path.heading[0]) - self.facing)
         if abs(aside) > TURN_FIRST:
             self._turn(aside, walks_on=True)
-            path = _path_through(self.middle, run)
+            path = path_through(self.middle, run)
         if self.planned and self.planned[-1].kind not in ("stop", "stand"):
             self._stand(BEFORE_WALK)
         manners = self.manners
         begin, way = path.points[0], ahead(float(path.heading[0]))
-        lead = {s: float((f.position - _on(begin)) @ way) for s, f in self.feet.items()}
+        lead = {s: float((f.position - on_floor(begin)) @ way) for s, f in self.feet.items()}
         first = RIGHT if lead[RIGHT] <= lead[LEFT] + 0.01 else LEFT
         plan = follow(
             path,
@@ -282,9 +280,7 @@ class _Director:
                 seen = tuple(
                     (a, (b - begin) / seconds, (e - begin) / seconds) for a, b, e in glances
                 )
-                how = LocalStep(
-                    swing_height=TURN_LIFT, gaze=self.gaze, glances=seen, closes=j == 1
-                )
+                how = LocalStep(swing_height=TURN_LIFT, gaze=self.gaze, glances=seen, closes=j == 1)
                 self._local("turn", target, following, seconds, how)
             self.facing = goal
         self.gaze += angle
@@ -303,7 +299,7 @@ class _Director:
         left = leftward(self.facing)
         width = float((self.feet[LEFT].position - self.feet[RIGHT].position) @ left)
         for _ in range(count):
-            middle = _on(self.middle) + move
+            middle = on_floor(self.middle) + move
             targets = {
                 s: self._foot(s, middle + 0.5 * width * SIDE_SIGN[s] * left, self.facing)
                 for s in (LEFT, RIGHT)
@@ -313,7 +309,8 @@ class _Director:
     def _pair(self, kind: StepKind, lead: int, targets: dict[int, Footstep]) -> None:
         how = LocalStep(gaze=self.gaze)
         ways = [
-            float(np.linalg.norm(targets[s].position - self.feet[s].position)) for s in (LEFT, RIGHT)
+            float(np.linalg.norm(targets[s].position - self.feet[s].position))
+            for s in (LEFT, RIGHT)
         ]
         size = self._scale() * (SMALL + (1.0 - SMALL) * min(1.0, max(ways) / WHOLE))
         for j, side in enumerate((lead, 1 - lead)):
@@ -337,13 +334,12 @@ class _Director:
             )
 
     def _be_at(self, action: BeAt) -> None:
-        goals = _goals(action, self.facing, self.manners)
+        goals = goals_of(action, self.facing, self.manners.stance)
         place = 0.5 * (goals[LEFT][0] + goals[RIGHT][0])
         facing = 0.5 * (goals[LEFT][1] + goals[RIGHT][1])
         if float(np.linalg.norm(place - self.middle)) > STEP_ONLY:
             self._walk([([place], False)])
-            facing = 0.5 * (goals[LEFT][1] + goals[RIGHT][1])
-        self._turn(_wrapped(facing - self.facing), walks_on=False)
+        self._turn(wrapped(facing - self.facing), walks_on=False)
         self._settle()
         whole = 2.0 * np.pi * np.round((self.facing - facing) / (2.0 * np.pi))
         for _ in range(12):
@@ -359,7 +355,7 @@ class _Director:
                 self._step(Step("left" if aside > 0.0 else "right", abs(aside)))
         targets = {
             s: replace(
-                self._foot(s, _on(goals[s][0]), self.facing), heading=goals[s][1] + whole
+                self._foot(s, on_floor(goals[s][0]), self.facing), heading=goals[s][1] + whole
             )
             for s in (LEFT, RIGHT)
         }
@@ -374,7 +370,10 @@ class _Director:
     def _reach(self, targets: dict[int, Footstep]) -> None:
         """A last pair of steps onto given footsteps, in the order in which no legs cross."""
         aside = float(
-            sum((targets[s].position - self.feet[s].position) @ leftward(self.facing) for s in (0, 1))
+            sum(
+                (targets[s].position - self.feet[s].position) @ leftward(self.facing)
+                for s in (0, 1)
+            )
         )
         lead = LEFT if aside > 0.0 else RIGHT
         before = (len(self.planned), dict(self.feet), self.clock)
@@ -428,59 +427,3 @@ class _Director:
     def middle(self) -> Float[np.ndarray, "2"]:
         """x, z half way between the feet."""
         return 0.5 * (self.feet[LEFT].position + self.feet[RIGHT].position)[[0, 2]]
-
-
-def _goals(
-    action: BeAt, facing: float, manners: Manners
-) -> dict[int, tuple[Float[np.ndarray, "2"], float]]:
-    """x, z and heading of both feet at the end of ``be at``."""
-    if action.feet is not None:
-        return {s: (np.array(action.feet[s][:2]), action.feet[s][2]) for s in (LEFT, RIGHT)}
-    heading = facing if action.heading is None else action.heading
-    left = leftward(heading)[[0, 2]]
-    half, toe_out = 0.5 * manners.stance.width, np.array(manners.stance.toe_out)
-    mean = 0.5 * float(toe_out[0] - toe_out[1])
-    return {
-        s: (
-            np.array(action.point) + half * SIDE_SIGN[s] * left,
-            heading + float(SIDE_SIGN[s] * toe_out[s]) - mean,
-        )
-        for s in (LEFT, RIGHT)
-    }
-
-
-def _path_through(
-    here: Float[np.ndarray, "2"], run: Sequence[tuple[list[Float[np.ndarray, "2"]], bool]]
-) -> Path:
-    """One path through the points of all ways; straight ways bend near their ends only."""
-    points = [here]
-    last = len(run) - 1
-    for i, (way, soft) in enumerate(run):
-        if not soft and last > 0:
-            gap = way[0] - points[-1]
-            size = float(np.linalg.norm(gap))
-            if size > 2.5 * CORNER:
-                unit = gap / size
-                begin = points[-1]
-                if i > 0:
-                    points.append(begin + CORNER * unit)
-                if i < last:
-                    points.append(way[0] - CORNER * unit)
-        points += way
-    kept = [points[0]]
-    for point in points[1:]:
-        if np.linalg.norm(point - kept[-1]) > NO_WAY:
-            kept.append(point)
-    if len(kept) < 2:
-        raise InfeasibleError("there is no way to walk: it begins where it ends")
-    return Path.through(np.array(kept))
-
-
-def _on(place: Float[np.ndarray, "2"]) -> Float[np.ndarray, "3"]:
-    return np.array([place[0], 0.0, place[1]])
-
-
-def _wrapped(angle: float) -> float:
-    """Within -180..180 deg; half a turn is to the left."""
-    turned = float(np.arctan2(np.sin(angle), np.cos(angle)))
-    return np.pi if turned <= -np.pi + 1e-12 else turned

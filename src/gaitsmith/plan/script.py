@@ -177,10 +177,8 @@ def written(action: Action) -> str:
             return f"turn {'left' if angle >= 0.0 else 'right'} {degrees(abs(angle))}"
         case Face(heading):
             return f"face {degrees(heading)}"
-        case LookAt(None):
-            return "look ahead"
         case LookAt(point):
-            return f"look at {joined(*point)}"
+            return "look ahead" if point is None else f"look at {joined(*point)}"
         case Stand(seconds):
             return f"stand {float(seconds)!r}"
         case Lean(way, angle):
@@ -245,7 +243,9 @@ class _Words:
     def size(self, what: str, unit: str, most: float, *, least: float = 0.0) -> float:
         (value,) = self.numbers(what, 1)
         if not least <= value <= most or (least == 0.0 and value == 0.0 and what != "the angle"):
-            raise self.wrong(f"{what} must be above {least:g} and at most {most:g} {unit}, got {value:g}")
+            raise self.wrong(
+                f"{what} must be above {least:g} and at most {most:g} {unit}, got {value:g}"
+            )
         return value
 
     def done(self) -> None:
@@ -321,7 +321,10 @@ def _be(words: _Words) -> Action:
         left = words.numbers("the left foot", 3)
         words.word("word", "r")
         right = words.numbers("the right foot", 3)
-        feet = ((*left[:2], math.radians(left[2])), (*right[:2], math.radians(right[2])))
+        feet = (
+            (left[0], left[1], math.radians(left[2])),
+            (right[0], right[1], math.radians(right[2])),
+        )
     return BeAt(point, heading, feet)
 
 

@@ -28,8 +28,9 @@ LARGEST_TURN = float(np.radians(100.0))
 #: Farthest that one pair of steps moves the body, over the leg length (0.5-0.7 m forward,
 #: 0.35-0.5 m back, 0.58-0.65 m aside from standing).
 FARTHEST = {"forward": 0.75, "back": 0.50, "left": 0.72, "right": 0.72}
-#: Axes of feet that stand nearer than this touch, meters.
-TOUCHING = 0.045
+#: Axes of feet that stand nearer than this touch, meters; a foot that lands across the other one
+#: must keep clear of its toes or heel by more, or it could not get there.
+TOUCHING, TOUCHING_ACROSS = 0.045, 0.075
 TURNAROUNDS = ("dynamic", "stationary")
 
 
@@ -123,10 +124,13 @@ def local_step(
             front=foot.ball + foot.toes,
         )[0]
     )
-    if apart < TOUCHING:
+    way = target.position - stance.position
+    across = float(way @ leftward(stance.direction)) * SIDE_SIGN[target.side] < 0.0
+    least = TOUCHING_ACROSS if across else TOUCHING
+    if apart < least:
         raise InfeasibleError(
             f"the {SIDES[target.side]} foot would be set on the {SIDES[stance.side]} one: their "
-            f"axes would be {apart:.3f} m apart, feet need {TOUCHING:.3f} m"
+            f"axes would be {apart:.3f} m apart, feet need {least:.3f} m there"
         )
     return PlannedStep(0, kind, stance, origin, target, None, following, duration, how)
 

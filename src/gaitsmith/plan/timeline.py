@@ -77,7 +77,14 @@ class Timeline:
         """Footsteps in order of landing, the two initial feet first, and when."""
         first = self.planned[0]
         feet = [first.origin, first.stance]
-        if abs(float((first.stance.position - first.origin.position) @ ahead(first.stance.direction))) < 1e-6:
+        if (
+            abs(
+                float(
+                    (first.stance.position - first.origin.position) @ ahead(first.stance.direction)
+                )
+            )
+            < 1e-6
+        ):
             feet.sort(key=lambda f: f.side)
         times = [0.0, 0.0]
         for step, end in zip(self.planned, self._ends, strict=True):

@@ -42,7 +42,9 @@ def join_all(steps: Sequence[ReferenceStep], kinds: Sequence[StepKind]) -> list[
     faces a little aside of the path) fades over the step that follows.
     """
     local = [kind in LOCAL_KINDS for kind in kinds]
-    first = [i for i in range(len(kinds)) if i == 0 or local[i] or local[i - 1] or kinds[i] == "start"]
+    first = [
+        i for i in range(len(kinds)) if i == 0 or local[i] or local[i - 1] or kinds[i] == "start"
+    ]
     out: list[ReferenceStep] = []
     for begin, end in zip(first, [*first[1:], len(steps)], strict=True):
         part = list(steps[begin:end])

@@ -87,8 +87,9 @@ class FootAngles:
         angles: tuple[float, float, float],
         toe_off: float,
     ) -> FootAngles:
-        """``begin``: pitch of stance and swing foot at 0; the swing's phases are shifted so that
-        the walk's toe-off comes at ``toe_off``.
+        """From ``begin``, the pitch of stance and swing foot at 0, through ``angles``.
+
+        The swing's phases are shifted so that the walk's toe-off comes at ``toe_off``.
         """
         st, sw, tom = angles
 

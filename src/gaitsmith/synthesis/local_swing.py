@@ -17,8 +17,10 @@ if TYPE_CHECKING:
 PASSING = 0.12
 #: Distance of the feet's axes in passing over stature; narrower footsteps keep their own.
 APART = 0.085 / 1.75
-#: The way is pushed aside in such parts (m), at most so many.
-PUSH, MOST_PUSHES = 0.01, 30
+#: The way is pushed aside in such parts (m), at most so many, straight outward or so far from it.
+PUSH, MOST_PUSHES = 0.01, 24
+AROUND = np.radians([0.0, 40.0, -40.0, 75.0, -75.0])
+AROUND.flags.writeable = False
 
 
 def swing_way(
@@ -59,25 +61,38 @@ def kept_apart(
     foot: Foot,
     stature: float,
 ) -> Float[np.ndarray, "T 2"]:
-    """``way`` pushed outward, by ``shape``, by the least that keeps the feet from touching."""
-    count = len(way)
-    stands, turned = np.tile(stance, (count, 1)), np.full(count, stance_heading)
+    """``way`` pushed aside, by ``shape``, by the least that keeps the feet from touching.
 
-    def apart(path: Float[np.ndarray, "T 2"]) -> Float[np.ndarray, "T"]:
-        return feet_apart(
-            path, heading, stands, turned, back=foot.heel, front=foot.ball + foot.toes
+    Outward, or outward and round the toes or the heel: the first of these that helps.
+    """
+
+    def apart(
+        paths: Float[np.ndarray, "k n 2"], turned: Float[np.ndarray, "n"]
+    ) -> Float[np.ndarray, "k"]:
+        rows = paths.reshape(-1, 2)
+        many = len(rows)
+        gaps = feet_apart(
+            rows,
+            np.tile(turned, len(paths)),
+            np.tile(stance, (many, 1)),
+            np.full(many, stance_heading),
+            back=foot.heel,
+            front=foot.ball + foot.toes,
         )
+        return gaps.reshape(len(paths), -1).min(axis=1)
 
-    plain = apart(way)
-    want = min(APART * stature, float(plain[0]), float(plain[-1]))
-    short = max(0.0, want - float(plain.min()))
-    best, pushed = way, 0.0
-    for _ in range(MOST_PUSHES):
-        if short <= 1e-4:
-            break
-        pushed += PUSH
-        path = way + (pushed * shape)[:, None] * outward
-        missing = want - float(apart(path).min())
-        if missing < short:
-            best, short = path, missing
-    return best
+    want = min(APART * stature, float(apart(way[None, [0, -1]], heading[[0, -1]])[0]))
+    if float(apart(way[None], heading)[0]) >= want - 1e-4:
+        return way
+    along = np.array([-outward[1], outward[0]])
+    unit = np.cos(AROUND)[:, None] * outward + np.sin(AROUND)[:, None] * along
+    size = PUSH * (1.0 + np.arange(MOST_PUSHES))
+    moved = size[:, None, None] * unit
+    paths = way + shape[:, None] * moved.reshape(-1, 1, 2)
+    gaps = apart(paths, heading)
+    enough = np.flatnonzero(gaps >= want - 1e-4)
+    if len(enough):
+        return paths[enough[0]]
+    # no way is wide enough: the widest, a longer one only where it gains
+    cost = 0.15 * np.repeat(size, len(AROUND))
+    return paths[int((gaps - cost).argmax())]
