@@ -41,12 +41,14 @@ if TYPE_CHECKING:
 
 #: Seconds of the first and of the closing step of a pair that moves the body by half a meter, of
 #: an adult whose leg is LEG meters; others keep the Froude number.
-SECONDS = {"forward": (0.90, 0.72), "backward": (0.95, 0.78), "lateral": (0.82, 0.74)}
+SECONDS = {"forward": (0.90, 0.72), "backward": (0.95, 0.78), "lateral": (0.82, 0.67)}
 LEG = 0.834
 #: Part of that which a very small step takes, and the way (m) from which all of it is taken.
 SMALL, WHOLE = 0.75, 0.5
 #: Seconds of a step of a turn: of none, and more per radian.
 TURN_SECONDS, PER_RADIAN = 0.52, 0.12
+#: swhf of the foot that closes a lateral step, which heel and toes lift as well.
+CLOSING_LIFT = 0.7
 #: Lift of the foot in a turn (1-4 cm measured).
 TURN_LIFT = 0.5
 #: Seconds of standing between a walk and local steps, and between local steps and a walk.
@@ -330,7 +332,11 @@ class _Director:
                 targets[side],
                 targets[1 - side] if j == 0 else None,
                 size * SECONDS[own][j],
-                replace(how, closes=j == 1),
+                replace(
+                    how,
+                    closes=j == 1,
+                    swing_height=CLOSING_LIFT if j and own == "lateral" else 1.0,
+                ),
             )
 
     def _be_at(self, action: BeAt) -> None:
