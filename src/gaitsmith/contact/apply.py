@@ -111,6 +111,7 @@ class ContactPlan:
         for name in MONOTONE:
             rates[:, columns[name]] = pchip_slopes(walk.at, curves[name])
         _leave_as_rolled(walk, stands, body, rates, columns)
+        rates[:, columns["foot_heading"]][~free] = 0.0  # a foot that bears does not turn
         return ContactPlan(
             body=body,
             at=walk.at,
