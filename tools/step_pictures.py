@@ -139,9 +139,11 @@ def measured(path: Path) -> None:
             swings = sorted((b - a, s) for s in (0, 1) for a, b in p.swings[s])
             drop = 100.0 * (np.percentile(p.hips[:, 1], 98) - p.hips[:, 1].min())
             lengths = [round(v, 2) for v, _ in swings]
-            print(f"{name}, {who}: swings {lengths} s, lift {100 * p.lift.max():.1f} cm, "
-                  f"drop {drop:.1f} cm, pelvis {np.ptp(p.pelvis):.0f} deg, "
-                  f"{p.time[-1]:.1f} s")
+            print(
+                f"{name}, {who}: swings {lengths} s, lift {100 * p.lift.max():.1f} cm, "
+                f"drop {drop:.1f} cm, pelvis {np.ptp(p.pelvis):.0f} deg, "
+                f"{p.time[-1]:.1f} s"
+            )
             begin = min(a for s in (0, 1) for a, _ in p.swings[s])
             end = max(b for s in (0, 1) for _, b in p.swings[s])
             t = p.time - begin
