@@ -65,8 +65,9 @@ def top_views(path: Path) -> None:
     import matplotlib as mpl
 
     mpl.use("Agg")
-    from curve_pictures import top_view
     from matplotlib import pyplot as plt
+
+    from curve_pictures import top_view
 
     scripts = (
         "step forward 0.55",
