@@ -61,7 +61,7 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
     hip = _hips(walk, body)
     _lock(walk, body, stands, down)
     # a foot that leaves from its heel, as in a step back, has no heel to raise
-    rear = _rear(walk, down) & (walk.curves["pitch"] <= 0.0)
+    rear = _rear(walk, down) & (walk.curves["pitch"] <= 1e-6)
     slack = np.where(down, 0.0, np.inf)
     share = walk.phase / np.minimum(walk.toe_off[walk.step], 1.0)
     slack[rear] = (REAR_SLACK * body.leg_length * share)[rear.any(-1)]
