@@ -119,7 +119,7 @@ def main() -> None:
 
     walk = winter()
     body = gaitsmith.body_from(1.6)
-    data = walk.prototypes[0]
+    data, _ = walk.prototypes[0]
     own, _, times = ratio(
         lambda: [generalize(data, body, 0.6, 0.65) for _ in range(200)], kinematics
     )

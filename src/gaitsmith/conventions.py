@@ -48,8 +48,11 @@ import numpy as np
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-#: A step from standing feet side by side, a step of a walk, or one that closes to standing.
-StepKind = Literal["start", "walk", "stop"]
+#: Steps of a walk: from standing feet, mid-walk, closing to standing; local steps ([KB93]), and
+#: a while of standing, in which no foot moves.
+StepKind = Literal["start", "walk", "stop", "forward", "backward", "lateral", "turn", "stand"]
+#: The kinds that are no part of a walk.
+LOCAL_KINDS = ("forward", "backward", "lateral", "turn", "stand")
 LEFT, RIGHT = 0, 1
 SIDES = ("left", "right")
 #: +1 where +X is, -1 on the other side: multiplies lateral offsets.

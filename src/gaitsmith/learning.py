@@ -17,16 +17,16 @@ from gaitsmith.errors import (
     UnknownNameError,
 )
 from gaitsmith.gait.cycle import EVENTS
-from gaitsmith.gait.events import Stance
 from gaitsmith.motion.motion import Markers, Motion
 from gaitsmith.synthesis.gaits import GAITS, Gait, learned
-from gaitsmith.walks.learned import SUFFIX, LearnedGait, gait_from_dict, learned_gait, read_gait
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from gaitsmith.body.body import Body
+    from gaitsmith.gait.events import Stance
     from gaitsmith.synthesis.upper_body import Manner
+    from gaitsmith.walks.learned import LearnedGait
 
 #: Suffixes of clips that can be learned from.
 CLIPS = (*(s for s in io.READERS if s != ".npz"), ".npz", *io.MARKER_READERS)
@@ -77,6 +77,8 @@ def learn(
     >>> motion = walk(distance=6.0, fps=60)  # doctest: +SKIP
     >>> learn(motion, name="again").step_width  # doctest: +SKIP
     """
+    from gaitsmith.walks.learned import learned_gait  # late: a walk of a built-in gait needs none
+
     file = ""
     if isinstance(clip, str | Path):
         path = Path(clip)
@@ -137,7 +139,9 @@ def gait_from(
     ``spec`` is the name of a built-in gait, a ``.gait.json`` file, a clip to learn from, a
     learned gait, or what a recipe has in its place.
     """
-    from gaitsmith.walks.learned import gait_to_dict
+    if isinstance(spec, str) and spec in GAITS:
+        return GAITS[spec](manner), spec
+    from gaitsmith.walks.learned import SUFFIX, gait_from_dict, gait_to_dict, read_gait
 
     if isinstance(spec, dict):
         try:
@@ -146,8 +150,6 @@ def gait_from(
             raise InvalidInputError(f"not a gait: {error}") from None
     if isinstance(spec, str | Path):
         text = str(spec)
-        if text in GAITS:
-            return GAITS[text](manner), text
         path = Path(text)
         if text.lower().endswith((SUFFIX, ".json")):
             spec = read_gait(path)
@@ -175,6 +177,8 @@ def body_of(spec: str | float | Path | Body) -> Body:
 
 def read_events(path: str | Path) -> list[Stance]:
     """Stances in a CSV: ``side,heel_strike,foot_flat,heel_off,toe_off``, seconds of the clip."""
+    from gaitsmith.gait.events import Stance
+
     path = Path(path)
     try:
         rows = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))

@@ -17,27 +17,33 @@ from gaitsmith.body.files import body_from_dict, body_to_dict
 from gaitsmith.errors import GaitsmithWarning, InvalidInputError
 from gaitsmith.ground import GROUNDS
 from gaitsmith.learning import body_of, gait_from
+from gaitsmith.plan.director import Manners, direct
 from gaitsmith.plan.follow import curve_share, follow
+from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.given import GivenSteps, plan_given
 from gaitsmith.plan.lengths import Stance
 from gaitsmith.plan.pace import UNUSUAL_FROUDE, Pace, choose_pace, froude
 from gaitsmith.plan.paths import Path as WalkPath
 from gaitsmith.plan.rhythm import Rhythm
+from gaitsmith.plan.script import Script
+from gaitsmith.plan.timeline import Timeline
 from gaitsmith.plan.where import read_where
 from gaitsmith.synthesis.curved import BANKINGS, CurvedGenerator
+from gaitsmith.synthesis.mixed import MixedGenerator
 from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
+from gaitsmith.synthesis.stepping import LocalGenerator
 from gaitsmith.synthesis.upper_body import Manner
 from gaitsmith.walks.generalize import LONG_STEP, check_step_length
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
     from gaitsmith.body.body import Body
     from gaitsmith.ground import Ground
     from gaitsmith.motion.motion import Motion
-    from gaitsmith.plan.footsteps import StepPlan
+    from gaitsmith.plan.script import Action
     from gaitsmith.plan.where import PathLike, StepsLike
     from gaitsmith.synthesis.gaits import Habits
     from gaitsmith.walks.learned import LearnedGait
@@ -77,6 +83,7 @@ def walk(
     distance: float | None = None,
     path: PathLike | None = None,
     steps: StepsLike | None = None,
+    do: str | Sequence[str | Action] | None = None,
     body: str | float | Path | Body = 1.75,
     gait: str | Path | LearnedGait | dict[str, Any] = "neutral",
     step_length: float | None = None,
@@ -107,6 +114,10 @@ def walk(
         of mappings with these keys, or a :class:`~gaitsmith.plan.footsteps.StepPlan`. The
         person starts standing on the first two and ends standing on the last two; ``start``,
         ``stop``, ``step_width`` and ``toe_out`` do not apply.
+    do
+        A script of actions, ``"walk to 0,3; turn left 90; step back 0.3"``, or a list of them
+        (:mod:`gaitsmith.plan.script`), from standing at 0,0 facing 0; ``start`` and ``stop`` do
+        not apply.
     body
         Height in meters, name of a built-in body, ``.toml`` file of measures, a clip (whose
         rig has the lengths), or a Body.
@@ -164,7 +175,7 @@ def walk(
     np.float64(3.0)
     """
     who = body_of(body)
-    where, said = read_where(distance, path, steps)
+    where, said = read_where(distance, path, steps, do)
     fps = positive("fps", fps, "frames per second")
     if not SLOWEST_FPS <= fps <= FASTEST_FPS:
         raise InvalidInputError(
@@ -220,15 +231,17 @@ def walk(
     )
     outside = banking == "body"
     plan = _plan(where, who, pace, stance, rhythm, ground, start, stop, keep=keep, outside=outside)
-    if step_length is not None and isinstance(where, WalkPath):
+    if step_length is not None and isinstance(where, WalkPath) and isinstance(plan, StepPlan):
         _warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
     generator = CurvedGenerator(style.walk, ground, style.overlay, banking=banking)
+    if isinstance(plan, Timeline):
+        generator = MixedGenerator(generator, LocalGenerator(style.walk, ground, style.overlay))
     prepared = prepare_walk(plan, generator, who, ground, rest=REST)
     return sample_walk(prepared, who, ground, fps=fps, recipe=recipe)
 
 
 def _plan(
-    where: WalkPath | GivenSteps | StepPlan,
+    where: WalkPath | GivenSteps | StepPlan | Script,
     body: Body,
     pace: Pace,
     stance: Stance,
@@ -239,8 +252,11 @@ def _plan(
     *,
     keep: bool,
     outside: bool,
-) -> StepPlan:
-    """Footsteps along a path, or those that were given."""
+) -> StepPlan | Timeline:
+    """Footsteps along a path, those that were given, or those of a script."""
+    if isinstance(where, Script):
+        manners = Manners(body, pace, stance, ground, rhythm, outside, keep)
+        return direct(where.actions, manners)
     if isinstance(where, WalkPath):
         return follow(
             where,

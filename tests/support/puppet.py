@@ -26,7 +26,8 @@ class Puppet:
     ``duty`` is the share of the stride that a foot is down (under 0.5 it runs), ``strike`` and
     ``push`` the soles' pitch at heel strike and toe-off, ``level`` the pitch between them,
     ``way`` where it goes against where it faces (90 sideways to the left, 180 backward),
-    ``turn`` how far it turns in a stride, ``crouch`` how far the hips are let down.
+    ``turn`` how far it turns in a stride, ``crouch`` how far the hips are let down,
+    ``fly`` how high they rise between two feet if it runs.
     """
 
     stride: float = 1.3
@@ -44,6 +45,7 @@ class Puppet:
     crouch: float = 0.0
     swing: float = 20.0
     hop: bool = False
+    fly: float = 0.05
     heading: float = 0.0
 
     def strikes(self, side: int, seconds: float) -> np.ndarray:
@@ -70,7 +72,7 @@ class Puppet:
         run = np.zeros(len(times))
         if max(self.duty) < 0.5 or self.hop:
             up = (2.0 * times / self.period * (0.5 if self.hop else 1.0) - duty) % 1.0
-            run = 0.05 * np.sin(np.pi * up) ** 2
+            run = self.fly * np.sin(np.pi * up) ** 2
         top = self._height(hips, feet) - self.crouch
         hips = hips + (top + run)[:, None] * np.array([0.0, 1.0, 0.0])
         return self._posed(times, fps, hips, feet, facing)

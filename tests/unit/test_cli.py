@@ -181,7 +181,7 @@ def test_version(run):
 DESIGNED = {"demo", "walk", "learn", "compose", "certify", "measure", "convert", "list"}
 OPTIONS = {
     "walk": "output distance path steps body gait step-length speed cadence start stop step-width "
-    "toe-out fps seed json help",
+    "toe-out vary fps seed json help",
     "demo": "output help",
     "list": "help",
 }

@@ -267,7 +267,7 @@ def test_a_bad_file_of_footsteps_names_the_line(text, line, tmp_path):
 
 def test_one_way_to_say_where():
     for where in ({}, {"distance": 1.0, "path": "0,0 0,1"}, {"path": "0,0 0,1", "steps": []}):
-        with pytest.raises(InvalidInputError, match="one of distance, path and steps"):
+        with pytest.raises(InvalidInputError, match="one of distance, path, steps and do"):
             walk(**where)
 
 

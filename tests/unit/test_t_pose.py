@@ -19,7 +19,7 @@ UP = np.array([0.0, 1.0, 0.0])
 
 @pytest.fixture(scope="module")
 def walk() -> Motion:
-    return gaitsmith.walk(distance=3.0, fps=30.0)
+    return gaitsmith.walk(distance=3.0, gait="winter", fps=30.0)
 
 
 def rebound(motion: Motion, seed: int, yaw: float = 0.0) -> Motion:

@@ -37,6 +37,10 @@ def walk(
         str | None,
         typer.Option(metavar="FILE", help="Footsteps: side,x,z,heading_deg[,y][,time] CSV."),
     ] = None,
+    do: Annotated[
+        str | None,
+        typer.Option(metavar="SCRIPT", help='Actions: "walk to 0,3; turn left 90; stand 1".'),
+    ] = None,
     body: Annotated[
         str, typer.Option(help="Height in meters, a name of `list bodies`, FILE.toml or FILE.bvh.")
     ] = "1.75",
@@ -71,6 +75,7 @@ def walk(
             distance=distance,
             path=path,
             steps=steps,
+            do=do,
             body=body,
             gait=gait,
             step_length=step_length,

@@ -10,7 +10,8 @@ import numpy as np
 
 from gaitsmith.body.leg import two_bone_ik
 from gaitsmith.body.sole import rolled_ankle
-from gaitsmith.conventions import ahead
+from gaitsmith.contact.reach import SAMPLED_REACH
+from gaitsmith.conventions import UP, ahead
 from gaitsmith.geometry.curves import hermite, parabola_slopes, pchip_slopes, smoothstep
 from gaitsmith.geometry.rotations import (
     about,
@@ -110,6 +111,7 @@ class ContactPlan:
         for name in MONOTONE:
             rates[:, columns[name]] = pchip_slopes(walk.at, curves[name])
         _leave_as_rolled(walk, stands, body, rates, columns)
+        rates[:, columns["foot_heading"]][~free] = 0.0  # a foot that bears does not turn
         return ContactPlan(
             body=body,
             at=walk.at,
@@ -160,11 +162,12 @@ class ContactPlan:
         hip = component_major((2, frames), 3)
         np.add(center, side, out=hip[0])
         np.subtract(center, side, out=hip[1])
+        # a walk that ends with a heel strike ends with that heel on the ground
+        touching = down | (phase >= 1.0)
+        center = center - self._too_high(hip, ankle, touching)
         # the knee points half way between where the foot and where the pelvis face
         towards = ahead(foot_heading) + ahead(heading)
         leg = two_bone_ik(hip, ankle, towards, thigh=self.body.thigh, shin=self.body.shin)
-        # a walk that ends with a heel strike ends with that heel on the ground
-        touching = down | (phase >= 1.0)
         toes = touching & (pitch <= 0.0)
         # where the toes bend above the sole, the ball's sole point moves as soon as they bend
         ball = toes & (meta == 0.0)
@@ -184,6 +187,29 @@ class ContactPlan:
             upper=upper.transpose(2, 0, 1),
             contacts=contacts.swapaxes(0, 1),
         )
+
+    def _too_high(
+        self,
+        hip: Float[np.ndarray, "2 F 3"],
+        ankle: Float[np.ndarray, "2 F 3"],
+        touching: Bool[np.ndarray, "2 F"],
+    ) -> Float[np.ndarray, "F 3"] | float:
+        """How far bearing legs are out of reach, which the hips come down by; moves ``hip``.
+
+        Planning keeps legs in reach on its nodes; between them a curve may stray by tenths of
+        a millimeter, which are degrees of a nearly straight knee.
+        """
+        limit = SAMPLED_REACH * self.body.leg_length
+        line = hip - ankle
+        square = line[..., 0] ** 2 + line[..., 1] ** 2 + line[..., 2] ** 2
+        far = touching & (square > limit**2)
+        if not far.any():
+            return 0.0
+        across = line[..., 0] ** 2 + line[..., 2] ** 2
+        allowed = np.sqrt(np.maximum(limit**2 - across, 0.0))
+        down_by = np.where(far, line[..., 1] - allowed, 0.0).max(axis=0)
+        hip[..., 1] -= down_by
+        return down_by[:, None] * UP
 
     @cached_property
     def _stands(self) -> tuple[Float[np.ndarray, "2 3 S"], ...]:

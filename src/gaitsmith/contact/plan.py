@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 #: The sole keeps this far from the ground in swing, meters, rising over a fifth of the swing.
 CLEARANCE, CLEARANCE_RAMP = 0.010, 0.2
+#: So much of it at once, so that no curve dips below the ground between nodes.
+AT_ONCE, AT_ONCE_RAMP = 0.0004, 0.05
 #: Part of the swing over which its first speed is matched to the leaving foot's.
 LEAVING = 0.2
 
@@ -58,7 +60,8 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
     down = walk.bearing()
     hip = _hips(walk, body)
     _lock(walk, body, stands, down)
-    rear = _rear(walk, down)
+    # a foot that leaves from its heel, as in a step back, has no heel to raise
+    rear = _rear(walk, down) & (walk.curves["pitch"] <= 1e-6)
     slack = np.where(down, 0.0, np.inf)
     share = walk.phase / np.minimum(walk.toe_off[walk.step], 1.0)
     slack[rear] = (REAR_SLACK * body.leg_length * share)[rear.any(-1)]
@@ -281,6 +284,7 @@ def _clearance(
     z = ankle[:, None, 2] + points[..., 0] * np.cos(heading)[:, None]
     lowest = (points[..., 1] - ground.height(x, z)).min(-1)
     want = CLEARANCE * smoothstep(u / CLEARANCE_RAMP) * smoothstep((1.0 - u) / CLEARANCE_RAMP)
+    want = want + AT_ONCE * smoothstep(u / AT_ONCE_RAMP) * smoothstep((1.0 - u) / AT_ONCE_RAMP)
     short = want - lowest
     soft = 0.3 * want + 1e-9  # a soft maximum: no corner where the lift begins
     return 0.5 * (short + np.sqrt(short**2 + soft**2))

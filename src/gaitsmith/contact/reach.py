@@ -27,6 +27,8 @@ REACH = 0.9988
 REAR_REACH = 0.9993
 #: The same for a swinging foot (3.6 deg), and how softly it is kept, over leg length.
 SWING_REACH, SOFT = 0.9995, 0.0022
+#: What a bearing leg may reach between the nodes that the others hold on (3.5 deg).
+SAMPLED_REACH = 0.99953
 #: Beyond this no pose is made.
 LIMIT = 0.9997
 #: Grid on which the lowering is found, and over what part of a step it is spread.
@@ -35,6 +37,8 @@ PER_STEP, SPREAD = 60, 0.12
 REAR_SLACK = 0.14
 #: Largest extra rise of the rear heel, radians.
 LARGEST_RAISE = 0.8
+#: Steepest that a rear foot is raised to, radians: on the tip of its toes; then hips come down.
+STEEPEST = 1.45
 
 
 def lowering(
@@ -135,7 +139,8 @@ def raised_heel(
     """How much farther the rear foot must raise its heel to stay in reach, radians >= 0.
 
     [KB92a] section 5.2 proposes the raise. The first angle that fits is taken: searched on
-    a grid, then bisected. 0 where the leg reaches, the largest where nothing fits.
+    a grid, then bisected. 0 where the leg reaches, the largest where nothing fits; no foot is
+    raised beyond :data:`STEEPEST`.
     """
     limit = REAR_REACH * leg_length
     extra = np.zeros(len(pitch))
@@ -161,7 +166,7 @@ def raised_heel(
         beyond = too_far(middle, far)
         low, high = np.where(beyond, middle, low), np.where(beyond, high, middle)
     extra[far] = high
-    return extra
+    return np.minimum(extra, np.maximum(STEEPEST + pitch, 0.0))
 
 
 def drawn_near(

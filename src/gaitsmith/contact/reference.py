@@ -105,7 +105,7 @@ class StepCurves:
         """
         if np.diff(self.phase).max() <= FINEST * (1.0 + 1e-9):
             return self
-        marks = np.unique([0.0, *(e for e in events if 0.0 < e < 1.0), 1.0])
+        marks = np.array(sorted({0.0, *(e for e in events if 0.0 < e < 1.0), 1.0}))
         pieces = []
         for first, last in pairwise(marks):
             own = self.phase[(self.phase >= first) & (self.phase <= last)]

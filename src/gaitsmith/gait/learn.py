@@ -15,9 +15,10 @@ from gaitsmith.body.rig import soles_of
 from gaitsmith.conventions import BALL, HEEL, LEFT, SIDES, TOE
 from gaitsmith.errors import InfeasibleError
 from gaitsmith.gait.cycle import Cycle
-from gaitsmith.gait.events import FootPath, Stance, check_order, stances
-from gaitsmith.gait.loop import average, closed, mirrored, read_pose
-from gaitsmith.geometry.rotations import about, inverse, log, multiply, rotate, sign_continuous
+from gaitsmith.gait.events import FootPath, Stance, stances
+from gaitsmith.gait.loop import average, closed, mirrored
+from gaitsmith.gait.strides import Clip, Span, gap_between, score, spans_of, straight, walked
+from gaitsmith.geometry.rotations import about, multiply, rotate, sign_continuous
 from gaitsmith.motion.kinematics import forward_kinematics, motion_kinematics, sole_positions
 
 if TYPE_CHECKING:
@@ -31,17 +32,14 @@ if TYPE_CHECKING:
 
 #: Samples of a learned stride.
 SAMPLES = 128
-#: Radians that a stride may turn and still be straight, and that its arms may be apart at its
-#: two ends and still be closed within one stride.
-_TURNS, _ARMS_GAP = float(np.radians(20.0)), float(np.radians(25.0))
+#: Radians that a stride's arms may be apart at its ends and still be closed within one stride.
+_ARMS_GAP = float(np.radians(25.0))
 #: Least double support after each heel strike, share of the stride: 4 % in all.
 _DOUBLE = 0.02
 #: Least share of the stride between two events of a foot.
 _APART = 0.004
 #: Shares of the usual heel that a clip may tell.
 _HEELS = (0.4, 1.3)
-#: Leg lengths that a stride must get ahead.
-_SHORTEST = 0.15
 _ARMS = tuple(f"{s}{part}" for s in SIDES for part in ("Shoulder", "UpperArm", "LowerArm", "Hand"))
 
 
@@ -76,46 +74,6 @@ class Learned:
     notes: tuple[str, ...]
 
 
-@dataclass(eq=False)
-class _Clip:
-    """A person's motion over ground, with what is needed over and over."""
-
-    motion: Motion
-    body: Body
-    soles: Float[np.ndarray, "F 2 3 3"]
-    speed: float
-    stances: list[Stance]
-
-    def foot(self, stance: Stance) -> Float[np.ndarray, "3"]:
-        """Where the ball stands during a stance, meters."""
-        rate = self.motion.fps
-        a, b = round(stance.foot_flat * rate), round(stance.heel_off * rate)
-        return self.soles[a : max(b, a) + 1, stance.side, BALL].mean(0)
-
-    def heading(self, time: float) -> float:
-        """Of the pelvis."""
-        _, turned = read_pose(self.motion, np.array([time]))
-        left = rotate(turned[0, 0], np.array([1.0, 0.0, 0.0]))
-        return float(np.arctan2(-left[2], left[0]))
-
-
-@dataclass(frozen=True)
-class _Span:
-    """A stride that could be taken: from one stance to the next of the same foot."""
-
-    first: Stance
-    last: Stance
-    between: Stance
-
-    @property
-    def duration(self) -> float:
-        return self.last.heel_strike - self.first.heel_strike
-
-    @property
-    def blend(self) -> float:
-        return min(s.toe_off - s.heel_strike for s in (self.first, self.last))
-
-
 def learn_cycle(
     person: Person,
     *,
@@ -144,13 +102,14 @@ def learn_cycle(
     """
     notes: list[str] = []
     clip = _prepared(person, events, notes)
-    spans = _straight(clip, _spans(clip.stances), notes)
-    best = min(spans, key=lambda s: _score(clip, s, spans))
+    spans = straight(clip, spans_of(clip.stances), notes)
+    spans = walked(clip, spans)
+    best = min(spans, key=lambda s: score(clip, s, spans))
     strides, last = 1, best.last
-    gap = _gap(clip, best.first, best.last, _ARMS)
+    gap = gap_between(clip, best.first, best.last, _ARMS)
     if gap > _ARMS_GAP:
         twice = {
-            _gap(clip, one.first, two.last, _ARMS): (one, two.last)
+            gap_between(clip, one.first, two.last, _ARMS): (one, two.last)
             for one in spans
             for two in spans
             if two.first is one.last
@@ -163,7 +122,7 @@ def learn_cycle(
     return _learned(clip, best, last, strides, symmetric, notes, source, license)
 
 
-def _prepared(person: Person, events: Sequence[Stance] | None, notes: list[str]) -> _Clip:
+def _prepared(person: Person, events: Sequence[Stance] | None, notes: list[str]) -> Clip:
     motion = over_ground(person.motion, notes)
     speed = walking_speed(motion)
     if speed < 0.1:
@@ -181,9 +140,15 @@ def _prepared(person: Person, events: Sequence[Stance] | None, notes: list[str])
         found = stances(feet, motion.fps, speed=speed, leg_length=person.body.leg_length)
     else:
         found = sorted(events, key=lambda s: s.heel_strike)
+        outside = [t for s in found for t in s.times if not 0.0 <= t <= motion.duration]
+        if outside:
+            raise InfeasibleError(
+                f"an event at {outside[0]:.3f} s is not in the clip, which lasts "
+                f"{motion.duration:.3f} s; give events in seconds of the clip (--events)"
+            )
     body = _with_heel(person.body, soles, found, motion.fps)
     motion = motion.with_(skeleton=replace(motion.skeleton, soles=soles_of(body.foot)))
-    return _Clip(motion, body, sole_positions(motion.skeleton, positions, world), speed, found)
+    return Clip(motion, body, sole_positions(motion.skeleton, positions, world), speed, found)
 
 
 def _with_heel(
@@ -255,84 +220,9 @@ def over_ground(motion: Motion, notes: list[str]) -> Motion:
     return motion.with_(root_position=carried)
 
 
-def _spans(found: Sequence[Stance]) -> list[_Span]:
-    """Every stride of either foot that the clip holds up to its last toe-off."""
-    out: list[_Span] = []
-    trouble: InfeasibleError | None = None
-    for i, first in enumerate(found):
-        rest = found[i : i + 3]
-        if first.cut in ("start", "both") or len(rest) < 3 or rest[2].cut:
-            continue
-        try:
-            check_order(rest)
-        except InfeasibleError as error:
-            trouble = error
-            continue
-        out.append(_Span(rest[0], rest[2], rest[1]))
-    if out:
-        return out
-    if trouble is not None:
-        raise trouble
-    known = "; ".join(f"{SIDES[s.side]} {s.heel_strike:.2f}-{s.toe_off:.2f} s" for s in found)
-    raise InfeasibleError(
-        "the clip holds no 1.6 strides of walking: from one heel strike to the toe-off after the "
-        f"next one of the same foot. Feet on the ground: {known or 'none found'}"
-    )
-
-
-def _straight(clip: _Clip, spans: list[_Span], notes: list[str]) -> list[_Span]:
-    """Those that lead straight ahead."""
-    good: list[_Span] = []
-    why: list[str] = []
-    for span in spans:
-        way = (clip.foot(span.last) - clip.foot(span.first)) * [1.0, 0.0, 1.0]
-        length = float(np.linalg.norm(way))
-        start, end = (clip.heading(s.heel_strike) for s in (span.first, span.last))
-        turn = float(np.angle(np.exp(1j * (end - start))))
-        aside = float(np.arctan2(way[0], way[2])) - 0.5 * turn - start
-        aside = abs(float(np.angle(np.exp(1j * aside))))
-        if length < _SHORTEST * clip.body.leg_length:
-            why.append(f"a stride of {length:.2f} m gets nowhere")
-        elif aside > 2.0:
-            why.append("it walks backward (or left and right are exchanged in its joints' names)")
-        elif aside > 0.7:
-            why.append("it walks sideways")
-        elif abs(turn) > _TURNS:
-            why.append(f"it turns by {np.degrees(abs(turn)):.0f} deg in a stride")
-        else:
-            good.append(span)
-    if not good:
-        raise InfeasibleError(
-            f"no straight, forward stride to learn from: {why[0]}; cut the clip to straight walking"
-        )
-    if why:
-        notes.append(f"{len(why)} of {len(spans)} strides left out: {why[0]}")
-    return good
-
-
-def _gap(clip: _Clip, first: Stance, last: Stance, names: Sequence[str]) -> float:
-    """Largest angle between the poses of two heel strikes, radians."""
-    _, turned = read_pose(clip.motion, np.array([first.heel_strike, last.heel_strike]))
-    joints = [clip.motion.skeleton.index(n) for n in names]
-    apart = log(multiply(inverse(turned[0, joints]), turned[1, joints]))
-    return float(np.linalg.norm(apart, axis=-1).max())
-
-
-def _score(clip: _Clip, span: _Span, spans: list[_Span]) -> float:
-    """How ill a stride closes and how unusual it is."""
-    gap = _gap(clip, span.first, span.last, clip.motion.skeleton.names[1:])
-    usual = float(np.median([s.duration for s in spans]))
-    turn = clip.heading(span.last.heel_strike) - clip.heading(span.first.heel_strike)
-    turn = abs(float(np.angle(np.exp(1j * turn))))
-    lengths = [float(np.linalg.norm(clip.foot(s.last) - clip.foot(s.first))) for s in spans]
-    own = lengths[spans.index(span)]
-    odd = abs(span.duration / usual - 1.0) + abs(own / float(np.median(lengths)) - 1.0)
-    return gap + turn + 4.0 * odd
-
-
 def _learned(
-    clip: _Clip,
-    span: _Span,
+    clip: Clip,
+    span: Span,
     last: Stance,
     strides: int,
     symmetric: bool,
@@ -391,7 +281,7 @@ def _learned(
     )
 
 
-def _phases(span: _Span, duration: float, notes: list[str]) -> Float[np.ndarray, "2 4"]:
+def _phases(span: Span, duration: float, notes: list[str]) -> Float[np.ndarray, "2 4"]:
     """Events as stride phases of the foot that begins the stride, that foot first."""
     begin = span.first.heel_strike
     own = (np.array(span.first.times) - begin) / duration

@@ -10,19 +10,11 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from importlib import import_module
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from gaitsmith.errors import UnknownFormatError
-from gaitsmith.io.amc import read_amc
-from gaitsmith.io.bvh import write_bvh
-from gaitsmith.io.bvh_motion import read_bvh
-from gaitsmith.io.gltf import write_glb
-from gaitsmith.io.marker_csv import read_marker_csv
-from gaitsmith.io.npz import read_npz, write_npz
-from gaitsmith.io.sto import Table, read_sto
-from gaitsmith.io.table import write_csv
-from gaitsmith.io.trc import read_trc
 from gaitsmith.motion.motion import Markers, Motion
 
 __all__ = [
@@ -31,7 +23,6 @@ __all__ = [
     "TABLE_READERS",
     "WRITERS",
     "Reader",
-    "Table",
     "Writer",
     "load",
     "load_markers",
@@ -41,6 +32,9 @@ __all__ = [
     "save_all",
 ]
 
+if TYPE_CHECKING:
+    from gaitsmith.io.sto import Table
+
 _Read = TypeVar("_Read")
 #: Writes a Motion in package conventions to a path; units, axes and quaternion order of the
 #: format are its own business. The path has the format's suffix, though not its final name.
@@ -48,19 +42,39 @@ Writer = Callable[[Motion, Path], None]
 #: Reads a file into a Motion in package conventions; FileFormatError if it cannot.
 Reader = Callable[[Path], Motion]
 
+
+def _late(module: str, name: str) -> Callable[..., Any]:
+    """A reader or writer whose module is imported when it is called."""
+
+    def call(*arguments: Any) -> Any:
+        return getattr(import_module(f"gaitsmith.io.{module}"), name)(*arguments)
+
+    return call
+
+
 #: Writers by suffix, in lower case.
 WRITERS: dict[str, Writer] = {
-    ".bvh": write_bvh,
-    ".csv": write_csv,
-    ".glb": write_glb,
-    ".npz": write_npz,
+    ".bvh": _late("bvh", "write_bvh"),
+    ".csv": _late("table", "write_csv"),
+    ".glb": _late("gltf", "write_glb"),
+    ".npz": _late("npz", "write_npz"),
 }
 #: Readers by suffix, in lower case.
-READERS: dict[str, Reader] = {".amc": read_amc, ".bvh": read_bvh, ".npz": read_npz}
+READERS: dict[str, Reader] = {
+    ".amc": _late("amc", "read_amc"),
+    ".bvh": _late("bvh_motion", "read_bvh"),
+    ".npz": _late("npz", "read_npz"),
+}
 #: Readers of measured markers by suffix.
-MARKER_READERS: dict[str, Callable[[Path], Markers]] = {".csv": read_marker_csv, ".trc": read_trc}
+MARKER_READERS: dict[str, Callable[[Path], Markers]] = {
+    ".csv": _late("marker_csv", "read_marker_csv"),
+    ".trc": _late("trc", "read_trc"),
+}
 #: Readers of tables of numbers over time by suffix.
-TABLE_READERS: dict[str, Callable[[Path], Table]] = {".mot": read_sto, ".sto": read_sto}
+TABLE_READERS: dict[str, Callable[[Path], Table]] = {
+    ".mot": _late("sto", "read_sto"),
+    ".sto": _late("sto", "read_sto"),
+}
 
 
 def save(motion: Motion, path: str | Path, writers: Mapping[str, Writer] = WRITERS) -> Path:

@@ -84,6 +84,7 @@ def follow(
     keep_cadence: bool = False,
     rhythm: Rhythm | None = None,
     stature: float = 1.75,
+    first: int = RIGHT,
 ) -> StepPlan:
     """Footsteps along ``path``.
 
@@ -110,6 +111,8 @@ def follow(
         as they are, and the way is kept.
     stature
         Of who walks, meters: for how much step widths vary.
+    first
+        Side of the foot that lands first.
 
     Raises
     ------
@@ -145,6 +148,8 @@ def follow(
     side = np.arange(len(along)) % 2
     side[2:] = 1 - side[2:]
     side[:2] = [LEFT, RIGHT] if start == "stand" else [RIGHT, LEFT]
+    if first == LEFT:
+        side = 1 - side
     steady = np.array([kind == "walk" for kind in kinds])
     if not rhythm.even:
         eased = eased * rhythm.factors(side[2:], steady)[1]

@@ -62,12 +62,44 @@ class Footstep:
     gaze: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
+@dataclass(frozen=True)
+class LocalStep:
+    """How a local step is taken: the attribute parameters of [KB93] section 4.
+
+    Attributes
+    ----------
+    swing_height
+        swhf: 1 lifts the foot by 5 cm at most, 0 drags it.
+    angles
+        Foot pitches (stance at HSM+, swing at HSM+, swing at TOM), toes up positive, radians;
+        None: what suits the step.
+    gaze
+        Heading looked at as the step begins, before any of ``glances``; None: what the step
+        before left, else straight ahead.
+    glances
+        Turns of the gaze: (radians, phase at which it begins, phase at which it ends). They may
+        begin before the step or end after it: the gaze leads.
+    closes
+        Whether the step ends in standing.
+    toe_off
+        Phase at which the swing foot leaves, once the weight is over the other; None: usual.
+    """
+
+    swing_height: float = 1.0
+    angles: tuple[float, float, float] | None = None
+    gaze: float | None = None
+    glances: tuple[tuple[float, float, float], ...] = ()
+    closes: bool = False
+    toe_off: float | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class PlannedStep:
     """One step of a plan: the swing foot goes from ``origin`` to ``target``.
 
     ``stance`` stays; ``following`` is where the stance foot goes next, None at the end;
-    ``before`` is where the stance foot came from, None at the beginning.
+    ``before`` is where the stance foot came from, None at the beginning. ``local`` says how a
+    local step is taken; None: a step of a walk.
     """
 
     index: int
@@ -78,6 +110,7 @@ class PlannedStep:
     before: Footstep | None
     following: Footstep | None
     duration: float
+    local: LocalStep | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,11 +13,14 @@ from gaitsmith.errors import FileFormatError, InvalidInputError
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.given import GivenSteps
 from gaitsmith.plan.paths import Path, checked_points
+from gaitsmith.plan.script import Script, read_script
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from jaxtyping import Float
+
+    from gaitsmith.plan.script import Action
 
     PathLike = str | FilePath | Path | Sequence[Sequence[float]] | Mapping[str, Any]
     StepsLike = str | FilePath | GivenSteps | StepPlan | Sequence[Mapping[str, Any]]
@@ -29,17 +32,22 @@ _SIDES = {"l": 0, "left": 0, "0": 0, "r": 1, "right": 1, "1": 1}
 
 
 def read_where(
-    distance: float | None, path: PathLike | None, steps: StepsLike | None
-) -> tuple[Path | GivenSteps | StepPlan, dict[str, Any]]:
-    """Where to walk, and how a recipe says it; exactly one of the three must be given."""
-    given = [
-        n for n, v in (("distance", distance), ("path", path), ("steps", steps)) if v is not None
-    ]
+    distance: float | None,
+    path: PathLike | None,
+    steps: StepsLike | None,
+    do: str | Sequence[str | Action] | None = None,
+) -> tuple[Path | GivenSteps | StepPlan | Script, dict[str, Any]]:
+    """Where to walk, and how a recipe says it; exactly one of the four must be given."""
+    ways = (("distance", distance), ("path", path), ("steps", steps), ("do", do))
+    given = [n for n, v in ways if v is not None]
     if len(given) != 1:
         raise InvalidInputError(
-            "say where to walk by one of distance, path and steps, got "
+            "say where to walk by one of distance, path, steps and do, got "
             + (" and ".join(given) if given else "none of them")
         )
+    if do is not None:
+        script = Script(tuple(read_script(do)))
+        return script, {"do": script.text}
     if distance is not None:
         length = positive("distance", distance, "meters")
         return Path.line(length), {"distance": length}

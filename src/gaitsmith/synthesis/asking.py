@@ -118,6 +118,12 @@ class Asker:
         return out
 
 
+def usual_duration(requests: Sequence[StepRequest]) -> float:
+    """The duration that most steps have, to a hundredth of a second."""
+    values, counts = np.unique([round(r.duration, 2) for r in requests], return_counts=True)
+    return float(values[counts.argmax()])
+
+
 def _answer(request: StepRequest, step: SagittalStep, over: Overlay) -> Answer:
     count = len(step.phase)
     parts = (
@@ -169,8 +175,7 @@ class _Grid:
         self._asker, self._body = asker, body
         self._anchor, self._grain = anchor, GRAIN * body.leg_length
         self._lowest = int(np.ceil((0.5 * SHORTEST * body.leg_length - anchor) / self._grain))
-        values, counts = np.unique([round(r.duration, 2) for r in requests], return_counts=True)
-        self._duration = float(values[counts.argmax()])
+        self._duration = usual_duration(requests)
         self._highest: int | None = None
 
     def _node(self, index: int) -> float:

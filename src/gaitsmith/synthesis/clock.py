@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaitsmith.conventions import LOCAL_KINDS
+
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
     from gaitsmith.plan.footsteps import StepPlan
+    from gaitsmith.plan.timeline import Timeline
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +39,7 @@ class Clock:
     rest: float = 0.0
 
     @staticmethod
-    def of(plan: StepPlan, *, rest: float = 0.0) -> Clock:
+    def of(plan: StepPlan | Timeline, *, rest: float = 0.0) -> Clock:
         """The clock of a plan: rates agree where steps of different duration meet."""
         durations = plan.durations
         speed = 1.0 / durations  # phase per second, if it passed evenly
@@ -54,6 +57,11 @@ class Clock:
         slowest = np.minimum(np.append(speed, speed[-1]), np.insert(speed, 0, speed[0]))
         joint = np.minimum(joint, 3.0 * slowest)
         rates = np.stack([joint[:-1] * durations, joint[1:] * durations], axis=-1)
+        for i, kind in enumerate(plan.kinds):
+            if kind in LOCAL_KINDS:  # they ease by themselves; standing joins what is beside it
+                before = i > 0 and plan.kinds[i - 1] == "stop"
+                after = i + 1 < len(plan.kinds) and plan.kinds[i + 1] == "start"
+                rates[i] = (0.0 if before else 1.0, 0.0 if after else 1.0)
         return Clock(np.concatenate([[0.0], np.cumsum(durations)]), rates, rest)
 
     @property

@@ -19,7 +19,7 @@ from gaitsmith.contact import ReferenceStep, StepCurves
 from gaitsmith.errors import InfeasibleStepError, InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.plan.course import lean_lever
-from gaitsmith.synthesis.asking import SHORTEST, Answer, Asker
+from gaitsmith.synthesis.asking import SHORTEST, Answer, Asker, usual_duration
 from gaitsmith.synthesis.bent import Bent, Flat2D
 from gaitsmith.synthesis.center import CenterPath, anchored, track
 from gaitsmith.synthesis.overlay import stride_of
@@ -109,6 +109,9 @@ class CurvedGenerator:
         anchor = _steady(bent.length[:, 1])
         if tabled:
             _bend_ends(straight, bent.length, anchor)
+            # the table is of one pace; so are then the steps that it does not hold
+            usual = usual_duration(requests)
+            requests = [replace(r, duration=usual, previous_duration=None) for r in requests]
         curved = [i for i, same in enumerate(straight) if not same]
         read: dict[int, Answer | None] = {}
         if tabled and curved and not any(requests[i].rise for i in curved):

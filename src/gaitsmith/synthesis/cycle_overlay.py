@@ -63,10 +63,7 @@ _ARM = ("Shoulder", "UpperArm", "LowerArm", "Hand")
 
 @dataclass(frozen=True)
 class _Ends:
-    """Step length and cadence over the cycle's own, at both ends of the step of each sample.
-
-    ``ease`` is the way between.
-    """
+    """Step length and cadence over the cycle's own at both ends of the step of each sample."""
 
     length: _Pair
     cadence: _Pair

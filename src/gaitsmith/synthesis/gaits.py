@@ -19,10 +19,11 @@ from gaitsmith.synthesis.cycle_overlay import CycleOverlay
 from gaitsmith.synthesis.upper_body import Manner, RuleOverlay
 from gaitsmith.walks import KinematicWalk, winter
 from gaitsmith.walks.files import built_in
-from gaitsmith.walks.from_cycle import walk_data_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from jaxtyping import Float
 
     from gaitsmith.synthesis.overlay import Overlayer
     from gaitsmith.walks.data import WalkData
@@ -39,6 +40,9 @@ PELVIS_TILT = float(np.radians(5.0))
 #: toe-off pitch (radians per leg length): the swing knee flexes 45, 55, 59, 61 deg at very slow to
 #: fast (Schwartz 2008), toe-off pitch is -38 - 17.5 v deg (CMU 07).
 BOUNCE_POWER, SWING_POWER, OFF_GAIN = 3.0, 1.6, 1.0
+
+#: Smaller turns of a sole or of toes about their edge are none, radians.
+ONSET = 1e-4
 
 
 @dataclass(frozen=True)
@@ -93,13 +97,25 @@ def _neutral() -> Gait:
 
 def neutral_step() -> WalkData:
     """The legs of ``neutral``, that change with the step length as people's; see the data file."""
+    from gaitsmith.walks.from_cycle import walk_data_of  # late: it ships, nobody fits it again
+
     walk, _ = walk_data_of(neutral_cycle(), subject())
     old = walk.character
     knee, strike, off, meta = old.gains
     # sole and toes keep step with each other
     gains = (knee, strike, OFF_GAIN, meta * OFF_GAIN / off)
     new = replace(old, gains=gains, bounce_power=BOUNCE_POWER, swing_power=SWING_POWER)
-    return walk.with_(character=new)
+    return walk.with_(
+        character=new,
+        meta=walk.meta.with_values(_rising(walk.meta.values)),
+        foot2=walk.foot2.with_values(-_rising(-walk.foot2.values)),
+    )
+
+
+def _rising(values: Float[np.ndarray, "n c"]) -> Float[np.ndarray, "n c"]:
+    """Nothing until they rise for good: a heel or a ball does not leave and come back by a hair."""
+    never_less = np.maximum.accumulate(values, axis=0)
+    return np.where(never_less < ONSET, 0.0, never_less)
 
 
 def winter_rules(manner: Manner | None = None) -> Gait:

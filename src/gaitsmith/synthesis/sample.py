@@ -14,6 +14,7 @@ from gaitsmith.conventions import SIDES
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import exp
 from gaitsmith.motion.motion import Labels, Motion
+from gaitsmith.plan.timeline import Timeline
 from gaitsmith.synthesis.overlay import upper_joints
 
 if TYPE_CHECKING:
@@ -123,11 +124,16 @@ def _labels(
     walk: PreparedWalk, ground: Ground, times: np.ndarray, recipe: dict[str, Any]
 ) -> Labels:
     plan = walk.plan
-    step, phase = walk.clock.position(times)
-    landed = times >= walk.clock.starts[-1] - 1e-9
+    if isinstance(plan, Timeline):
+        step, phase = plan.position_at(times)
+    else:
+        step, phase = walk.clock.position(times)
+        landed = times >= walk.clock.starts[-1] - 1e-9
+        step = np.minimum(step + 2, len(plan.side) - 1)
+        phase = np.where(landed, 1.0, phase)
     return Labels(
-        phase=np.where(landed, 1.0, phase),
-        step=np.minimum(step + 2, len(plan.side) - 1),
+        phase=phase,
+        step=step,
         footstep_side=plan.side,
         footstep_position=plan.position,
         footstep_heading=plan.heading,

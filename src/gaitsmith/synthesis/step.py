@@ -9,8 +9,10 @@ import numpy as np
 
 from gaitsmith.contact import StepCurves, plan_contact
 from gaitsmith.contact.reference import CURVES
+from gaitsmith.plan.timeline import Timeline
+from gaitsmith.synthesis.attention import Attention
 from gaitsmith.synthesis.clock import Clock
-from gaitsmith.synthesis.join import join_speeds
+from gaitsmith.synthesis.join import join_all
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,10 +36,39 @@ class WalkerState:
         correction, meters; None at the start of a walk.
     duration
         Seconds that the last step took; None at the start of a walk.
+    local
+        How a local step left the walker; None: in standing.
     """
 
     hip_height: float | None = None
     duration: float | None = None
+    local: LocalState | None = None
+
+
+@dataclass(frozen=True)
+class LocalState:
+    """How a local step leaves the walker: [KB93] section 3's state, of what is not in the feet.
+
+    Attributes
+    ----------
+    center
+        x, z of the hips, meters.
+    speed
+        Their velocity, meters per second.
+    heading, gaze
+        Of the pelvis and of the gaze, radians.
+    pitch
+        Of the soles of [left, right], toes up positive.
+    arms
+        Forward swing of [left, right] and how far both are held apart, beyond rest, radians.
+    """
+
+    center: tuple[float, float]
+    speed: tuple[float, float]
+    heading: float
+    gaze: float
+    pitch: tuple[float, float]
+    arms: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @runtime_checkable
@@ -104,9 +135,10 @@ class TabledStep:
 class PreparedWalk:
     """Steps, their common contact plan and the clock: a walk that can be looked at any time."""
 
-    plan: StepPlan
+    plan: StepPlan | Timeline
     contact: ContactPlan
     clock: Clock
+    attention: Attention | None = None
 
     @property
     def duration(self) -> float:
@@ -115,11 +147,12 @@ class PreparedWalk:
 
     def poses(self, times: Float[np.ndarray, "F"]) -> Poses:
         """Poses at ``times`` in seconds, in [0, duration], in any order."""
-        return self.contact.poses(self.clock.walk_phase(times))
+        poses = self.contact.poses(self.clock.walk_phase(times))
+        return poses if self.attention is None else self.attention.applied(times, poses)
 
 
 def prepare_walk(
-    plan: StepPlan,
+    plan: StepPlan | Timeline,
     generator: StepGenerator,
     body: Body,
     ground: Ground,
@@ -131,11 +164,13 @@ def prepare_walk(
     ``rest`` seconds of standing follow a walk that ends in standing.
     """
     prepared = _prepared(plan.steps(), generator, body)
-    clock = Clock.of(plan, rest=rest if plan.kinds[-1] == "stop" else 0.0)
-    references = join_speeds([p.reference for p in prepared])
-    if plan.kinds[-1] == "stop":
+    stands = plan.kinds[-1] not in ("start", "walk")
+    clock = Clock.of(plan, rest=rest if stands else 0.0)
+    references = join_all([p.reference for p in prepared], plan.kinds)
+    if stands:
         references.append(_stand_still(references[-1]))
-    return PreparedWalk(plan, plan_contact(references, body, ground), clock)
+    attention = Attention(body, plan.looks, plan.leans) if isinstance(plan, Timeline) else None
+    return PreparedWalk(plan, plan_contact(references, body, ground), clock, attention)
 
 
 def _prepared(steps: list[PlannedStep], generator: StepGenerator, body: Body) -> list[PreparedStep]:

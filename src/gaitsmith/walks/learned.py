@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gaitsmith._checks import number
 from gaitsmith._version import __version__
 from gaitsmith.body.files import body_from_dict, body_to_dict
 from gaitsmith.body.rig import skeleton_of
@@ -30,6 +31,8 @@ FORMAT = "gaitsmith-gait-1"
 SUFFIX = ".gait.json"
 #: Digits kept after the point: a micrometer, a fifth of an arc second.
 _DIGITS = 6
+#: Times that rounding may change a file's last digits before they stay.
+_ROUNDS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,8 +102,15 @@ def learned_gait(found: Learned, *, name: str, clip: str = "", upper_body: str) 
         span=found.span,
         notes=found.notes,
     )
-    # what is walked right away and what is read from the file are the same, to the byte
-    return gait_from_dict(gait_to_dict(gait))
+    # what is walked right away and what is read from the file are the same, to the byte; unit
+    # quaternions that were rounded and made unit again may be rounded otherwise
+    data = gait_to_dict(gait)
+    for _ in range(_ROUNDS):
+        gait = gait_from_dict(data)
+        before, data = data, gait_to_dict(gait)
+        if data == before:
+            break
+    return gait
 
 
 def _rounded(value: Any) -> Any:
@@ -200,7 +210,7 @@ def gait_from_dict(data: dict[str, Any]) -> LearnedGait:
             lift["leg_length_m"],
         ),
         step_lengths=_pair(data["step_lengths_m"]),
-        step_width=float(data["step_width_m"]),
+        step_width=number("step_width_m", data["step_width_m"], "meters"),
         toe_out=_pair({s: np.radians(v) for s, v in data["toe_out_deg"].items()}),
         upper_body=data["upper_body"],
         clip=str(data["clip"]["file"]),
@@ -208,13 +218,13 @@ def gait_from_dict(data: dict[str, Any]) -> LearnedGait:
             Stance(SIDES.index(s["side"]), *(s[event] for event in EVENTS), cut=s.get("cut", ""))
             for s in data["clip"]["stances"]
         ),
-        span=(data["clip"]["span_s"][0], data["clip"]["span_s"][1]),
+        span=(float(data["clip"]["span_s"][0]), float(data["clip"]["span_s"][1])),
         notes=tuple(data["notes"]),
     )
 
 
 def _pair(by_side: dict[str, float]) -> tuple[float, float]:
-    left, right = (float(by_side[side]) for side in SIDES)
+    left, right = (number(side, by_side[side], "meters or degrees") for side in SIDES)
     return left, right
 
 

@@ -1,0 +1,81 @@
+"""Ways and goals of a director: paths through points, and where ``be at`` sets the feet."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, leftward
+from gaitsmith.errors import InfeasibleError
+from gaitsmith.plan.paths import Path
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jaxtyping import Float
+
+    from gaitsmith.plan.lengths import Stance
+    from gaitsmith.plan.script import BeAt
+
+#: Straight legs of a walk bend only so far from their ends, meters.
+CORNER = 0.8
+#: Ways shorter than this are none, meters.
+NO_WAY = 1e-6
+
+
+def goals_of(
+    action: BeAt, facing: float, stance: Stance
+) -> dict[int, tuple[Float[np.ndarray, "2"], float]]:
+    """x, z and heading of both feet at the end of ``be at``."""
+    if action.feet is not None:
+        return {s: (np.array(action.feet[s][:2]), action.feet[s][2]) for s in (LEFT, RIGHT)}
+    heading = facing if action.heading is None else action.heading
+    left = leftward(heading)[[0, 2]]
+    half, toe_out = 0.5 * stance.width, np.array(stance.toe_out)
+    mean = 0.5 * float(toe_out[0] - toe_out[1])
+    return {
+        s: (
+            np.array(action.point) + half * SIDE_SIGN[s] * left,
+            heading + float(SIDE_SIGN[s] * toe_out[s]) - mean,
+        )
+        for s in (LEFT, RIGHT)
+    }
+
+
+def path_through(
+    here: Float[np.ndarray, "2"], run: Sequence[tuple[list[Float[np.ndarray, "2"]], bool]]
+) -> Path:
+    """One path through the points of all ways; straight ways bend near their ends only."""
+    points = [here]
+    last = len(run) - 1
+    for i, (way, soft) in enumerate(run):
+        if not soft and last > 0:
+            gap = way[0] - points[-1]
+            size = float(np.linalg.norm(gap))
+            if size > 2.5 * CORNER:
+                unit = gap / size
+                begin = points[-1]
+                if i > 0:
+                    points.append(begin + CORNER * unit)
+                if i < last:
+                    points.append(way[0] - CORNER * unit)
+        points += way
+    kept = [points[0]]
+    for point in points[1:]:
+        if np.linalg.norm(point - kept[-1]) > NO_WAY:
+            kept.append(point)
+    if len(kept) < 2:
+        raise InfeasibleError("there is no way to walk: it begins where it ends")
+    return Path.through(np.array(kept))
+
+
+def on_floor(place: Float[np.ndarray, "2"]) -> Float[np.ndarray, "3"]:
+    """x, 0, z of x, z."""
+    return np.array([place[0], 0.0, place[1]])
+
+
+def wrapped(angle: float) -> float:
+    """Within -180..180 deg; half a turn is to the left."""
+    turned = float(np.arctan2(np.sin(angle), np.cos(angle)))
+    return np.pi if turned <= -np.pi + 1e-12 else turned
