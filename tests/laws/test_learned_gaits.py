@@ -144,12 +144,13 @@ def test_it_keeps_every_promise(path):
     assert broken(walked(path), but=("unflagged_bearing",)) == {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("height", "ratio", "cadence"),
     [
         (1.2, 0.4, 90.0),
-        pytest.param(2.05, 0.8, 95.0, marks=pytest.mark.slow),
-        pytest.param(1.6, 0.6, 120.0, marks=pytest.mark.slow),
+        (2.05, 0.8, 95.0),
+        (1.6, 0.6, 120.0),
     ],
 )
 def test_anybody_walks_it(path, height, ratio, cadence):

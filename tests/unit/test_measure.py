@@ -542,6 +542,7 @@ def measured(path):
         return gaitsmith.measure(path)
 
 
+@pytest.mark.slow
 def test_every_measured_clip_gives_finite_numbers(measured_data):
     clips = sorted([*measured_data.rglob("*.bvh"), *measured_data.rglob("*.amc")])
     assert clips
