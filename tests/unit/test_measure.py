@@ -361,7 +361,7 @@ def test_the_same_walk_is_found_in_its_bvh(known, found):
         "toe_out_right_deg": 0.5,
         "stance_share": 0.02,
         "double_support_share": 0.04,
-        "toe_clearance_mm_median": 2.5,  # of a sole told from the skeleton alone
+        "toe_clearance_mm_median": 1.0,
         "penetration_mm_max": 0.5,
         "slip_mm_median": 0.5,
         "float_mm_p95": 0.5,

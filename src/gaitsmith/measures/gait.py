@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, SIDES
+from gaitsmith.conventions import BALL, LEFT, RIGHT, SIDE_SIGN, SIDES
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -60,9 +60,9 @@ def stride_figures(figure: Figure, steps: Steps) -> dict[str, float | None]:
 
 
 def clearances(figure: Figure, steps: Steps) -> Float[np.ndarray, "n"]:
-    """Least height of a sole point in the middle of each steady swing, meters.
+    """Least height of ball and toes in the middle of each steady swing, meters.
 
-    Over the line that joins what the foot stood on before and after.
+    The heel, which comes down to land, is no part of it. Over the line that joins what the foot stood on before and after.
     """
     feet, fps, out = figure.footsteps, figure.motion.fps, list[float]()
     for i in steps.index[steps.steady]:
@@ -75,7 +75,7 @@ def clearances(figure: Figure, steps: Steps) -> Float[np.ndarray, "n"]:
         frames = np.arange(first, last + 1)
         share = (frames / fps - begin) / max(swing, 1e-9)
         base = feet.height[j] + share * (feet.height[i] - feet.height[j])
-        low = figure.soles[frames, feet.side[i], :, 1].min(-1) - base
+        low = figure.soles[frames, feet.side[i], BALL:, 1].min(-1) - base
         out.append(float(low.min()))
     return np.array(out)
 
