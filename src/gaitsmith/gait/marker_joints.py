@@ -197,8 +197,12 @@ def _over_ground(
         bears, heel = (
             path[:, 1] <= np.quantile(path[:, 1], _LOW) for path in (ball, paths[side, "heel"])
         )
-        # a flat foot moves as the belt does; who walks on the toes has none
-        low.append(velocity[bears & heel if (bears & heel).sum() >= 5 else bears])
+        # a flat foot moves as the belt does, one that rolls lags; who walks on the toes has none
+        flat = bears & heel
+        if flat.sum() >= 5:
+            tilt = np.abs(np.gradient(ball[:, 1] - paths[side, "heel"][:, 1]))
+            bears = flat & (tilt <= np.median(tilt[flat]))
+        low.append(velocity[bears])
     belt = np.median(np.concatenate(low), axis=0)
     trunk = _mean(paths, sides[0], _trunk(paths, sides[0]))[:, [0, 2]]
     time = np.arange(len(trunk)) / rate

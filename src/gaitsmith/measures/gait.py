@@ -62,7 +62,8 @@ def stride_figures(figure: Figure, steps: Steps) -> dict[str, float | None]:
 def clearances(figure: Figure, steps: Steps) -> Float[np.ndarray, "n"]:
     """Least height of ball and toes in the middle of each steady swing, meters.
 
-    The heel, which comes down to land, is no part of it. Over the line that joins what the foot stood on before and after.
+    The heel, which comes down to land, is no part of it. Over the line that joins
+    what the foot stood on before and after.
     """
     feet, fps, out = figure.footsteps, figure.motion.fps, list[float]()
     for i in steps.index[steps.steady]:
