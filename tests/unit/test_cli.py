@@ -14,27 +14,8 @@ import pytest
 from gaitsmith import pipeline
 from gaitsmith._version import __version__
 from gaitsmith.body.presets import BODIES
-from gaitsmith.cli.main import main
 from gaitsmith.ground import GROUNDS
 from gaitsmith.walks import WALKS
-
-
-@pytest.fixture
-def run(monkeypatch, capsys, tmp_path):
-    """Run the command line in an empty folder: exit code, stdout, stderr."""
-    monkeypatch.chdir(tmp_path)
-
-    def command(*args):
-        monkeypatch.setattr(sys, "argv", ["gaitsmith", *map(str, args)])
-        code = 0
-        try:
-            main()
-        except SystemExit as stop:
-            code = stop.code or 0
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return command
 
 
 def walk(*args):

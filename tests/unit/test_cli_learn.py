@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import json
-import sys
 
 import pytest
 from puppet import Puppet
 from rigs import bare, cut
 
-from gaitsmith.cli.main import main
 from gaitsmith.pipeline import save
 
 KEYS = {
@@ -20,21 +18,10 @@ KEYS = {
 
 
 @pytest.fixture
-def run(monkeypatch, capsys, tmp_path):
-    monkeypatch.chdir(tmp_path)
+def run(run, tmp_path):
+    """Run the command line in a folder with a clip."""
     save(bare(Puppet().clip(4.0)), tmp_path / "clip.bvh")
-
-    def command(*args):
-        monkeypatch.setattr(sys, "argv", ["gaitsmith", *map(str, args)])
-        code = 0
-        try:
-            main()
-        except SystemExit as stop:
-            code = stop.code or 0
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return command
+    return run
 
 
 def test_learn_and_walk(run, tmp_path):

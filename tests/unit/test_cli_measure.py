@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import json
 import re
-import sys
 from pathlib import Path
 
 import pytest
 
 import gaitsmith
-from gaitsmith.cli.main import main
 from gaitsmith.cli.measure import HEADINGS
 
 STICK = """HIERARCHY
@@ -34,24 +32,6 @@ Frame Time: 0.033333
 0 0 0 0 0 0
 0 0 0 0 0 0
 """
-
-
-@pytest.fixture
-def run(monkeypatch, capsys, tmp_path):
-    """Run the command line in a folder with a walk in two formats."""
-    monkeypatch.chdir(tmp_path)
-
-    def command(*args):
-        monkeypatch.setattr(sys, "argv", ["gaitsmith", *map(str, args)])
-        code = 0
-        try:
-            main()
-        except SystemExit as stop:
-            code = stop.code or 0
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return command
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import sys
 import warnings
 
 import numpy as np
@@ -13,7 +12,6 @@ from judge import broken
 import gaitsmith
 from gaitsmith import io
 from gaitsmith.body.presets import body_from
-from gaitsmith.cli.main import main
 from gaitsmith.conventions import SIDE_SIGN, SIDES
 from gaitsmith.errors import GaitsmithWarning, InfeasibleError
 from gaitsmith.gait.events import Stance
@@ -395,23 +393,6 @@ def test_every_promise_is_kept(people, name):
     gait = gait_of(people(name))
     for body in (gait.body, 1.2, 1.75, 2.05):
         assert broken(gaitsmith.walk(gait=gait, body=body, distance=6.0, fps=120)) == {}
-
-
-@pytest.fixture
-def run(monkeypatch, capsys):
-    """Run the command line: exit code, stdout, stderr."""
-
-    def command(*args):
-        monkeypatch.setattr(sys, "argv", ["gaitsmith", *map(str, args)])
-        code = 0
-        try:
-            main()
-        except SystemExit as stop:
-            code = stop.code or 0
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return command
 
 
 def test_the_command_line_learns_and_walks(people, run, tmp_path):
