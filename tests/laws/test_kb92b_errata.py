@@ -17,6 +17,7 @@ from walkers import BODIES, PROTOTYPE, assert_walks_equal, chain, plan_of, point
 from gaitsmith.body.presets import KB92B_SUBJECT
 from gaitsmith.body.sole import roll
 from gaitsmith.contact.reference import stack
+from gaitsmith.contact.step_curves import ROWS
 from gaitsmith.ground import GROUNDS
 from gaitsmith.synthesis.join import join_speeds
 from gaitsmith.synthesis.step import WalkerState, prepare_walk
@@ -383,7 +384,7 @@ def test_d17_the_ankle_leaves_the_floor_with_the_speed_it_had(name):
     """
     body = BODIES[name]
     steps, walk = proposals(body), prepared(body)
-    ankle = walk.contact.table[:, walk.contact.columns["ankle"]].reshape(-1, 2, 3)
+    ankle = walk.contact.table[:, ROWS["ankle"]].reshape(-1, 2, 3)
     before, after = [], []
     for k in range(1, len(steps)):
         swing, curves = 1 - steps[k].stance, steps[k].curves

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from gaitsmith.geometry.angles import sine_cosine
 from gaitsmith.geometry.rotations import component_major
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def turned(
     pitch: Float[np.ndarray, "*n"],
 ) -> Float[np.ndarray, "*n 2"]:
     """Sagittal vector ``(forward, up)`` of the level foot after it pitches, toes up positive."""
-    c, s = np.cos(pitch), np.sin(pitch)
+    s, c = sine_cosine(pitch)
     return np.stack([forward * c - up * s, forward * s + up * c], axis=-1)
 
 
@@ -76,12 +77,12 @@ def _rolled(
     foot: Foot, pitch: Float[np.ndarray, "*n"], meta: Float[np.ndarray, "*n"]
 ) -> Callable[[float, float], Float[np.ndarray, "*n 2"]]:
     """Where the rolling foot has a point that the flat foot has at (forward, up) from N."""
-    c, s = np.cos(pitch), np.sin(pitch)
+    s, c = sine_cosine(pitch)
     rocker = pitch >= 0.0
     # on its heel the foot turns about it; else about the toe joint, which the toes carry as
     # they turn by meta about their tip
     back, high = -foot.toes, foot.toe_joint_height
-    cm, sm = np.cos(meta), np.sin(meta)
+    sm, cm = sine_cosine(meta)
     tip = foot.ball + foot.toes
     pivot_forward = np.where(rocker, -foot.heel, tip + back * cm + high * sm)
     pivot_up = np.where(rocker, 0.0, high * cm - back * sm)

@@ -8,6 +8,7 @@ look-up.
 
 from gaitsmith.contact.apply import ContactPlan, Poses
 from gaitsmith.contact.plan import plan_contact
-from gaitsmith.contact.reference import ReferenceStep, StepCurves
+from gaitsmith.contact.reference import ReferenceStep
+from gaitsmith.contact.step_curves import StepCurves
 
 __all__ = ["ContactPlan", "Poses", "ReferenceStep", "StepCurves", "plan_contact"]

@@ -11,6 +11,7 @@ import numpy as np
 from gaitsmith.body.leg import two_bone_ik
 from gaitsmith.body.sole import rolled_ankle
 from gaitsmith.contact.reach import SAMPLED_REACH
+from gaitsmith.contact.step_curves import ROWS, WIDTH
 from gaitsmith.conventions import UP, ahead
 from gaitsmith.geometry.curves import hermite, parabola_slopes, pchip_slopes, smoothstep
 from gaitsmith.geometry.rotations import (
@@ -84,8 +85,6 @@ class ContactPlan:
     at: Float[np.ndarray, "M"]
     table: Float[np.ndarray, "M C"]
     slopes: Float[np.ndarray, "M C"]
-    columns: dict[str, slice]
-    upper_joints: int
     stance: Int[np.ndarray, "S"]
     toe_off: Float[np.ndarray, "S"]
     stands: Footholds
@@ -98,27 +97,18 @@ class ContactPlan:
         # in the air the meta curve goes on as the toes turn, so that it is read with the right
         # slope up to the very toe-off; only bearing feet use it
         free, curves = ~walk.bearing(), walk.curves
-        curves["meta"] = np.where(free, -curves["pitch"] - curves["bend"], curves["meta"])
-        columns, width = {}, 0
-        for name, values in curves.items():
-            count = values[0].size
-            columns[name] = slice(width, width + count)
-            width += count
-        table = np.empty((len(walk.at), width))
-        for name, values in curves.items():
-            table[:, columns[name]] = values.reshape(len(walk.at), -1)
+        np.copyto(curves["meta"], -curves["pitch"] - curves["bend"], where=free)
+        table = np.ascontiguousarray(walk.table.T)
         rates = parabola_slopes(walk.at, table)
         for name in MONOTONE:
-            rates[:, columns[name]] = pchip_slopes(walk.at, curves[name])
-        _leave_as_rolled(walk, stands, body, rates, columns)
-        rates[:, columns["foot_heading"]][~free] = 0.0  # a foot that bears does not turn
+            rates[:, ROWS[name]] = pchip_slopes(walk.at, curves[name])
+        _leave_as_rolled(walk, stands, body, rates)
+        rates[:, ROWS["foot_heading"]][~free] = 0.0  # a foot that bears does not turn
         return ContactPlan(
             body=body,
             at=walk.at,
             table=table,
             slopes=rates,
-            columns=columns,
-            upper_joints=walk.curves["upper"].shape[1],
             stance=walk.stance,
             toe_off=walk.toe_off,
             stands=stands,
@@ -139,7 +129,7 @@ class ContactPlan:
         rows = np.ascontiguousarray(rows.T)
 
         def read(name: str) -> Float[np.ndarray, "..."]:
-            return rows[self.columns[name]]
+            return rows[ROWS[name]]
 
         step = np.clip(walk_phase.astype(np.int64), 0, self.steps - 1)
         phase = walk_phase - step
@@ -174,7 +164,7 @@ class ContactPlan:
         if self.body.foot.toe_joint_height > 0.0:
             ball &= pitch == 0.0
         contacts = np.stack([touching & (pitch >= 0.0), ball, toes], axis=-1)
-        upper = read("upper").reshape(self.upper_joints, 3, frames)
+        upper = read("upper").reshape((len(rows) - WIDTH) // 3, 3, frames)
         return Poses(
             center=center,
             heading=heading,
@@ -256,7 +246,6 @@ def _leave_as_rolled(
     stands: Footholds,
     body: Body,
     slopes: Float[np.ndarray, "M C"],
-    columns: dict[str, slice],
 ) -> None:
     """Give the ankle, at each toe-off, the very speed that rolling over the toe tip gives it."""
     node = np.flatnonzero(walk.phase == walk.toe_off[walk.step])
@@ -266,14 +255,14 @@ def _leave_as_rolled(
     side = 1 - walk.stance[step]
     stand, tiny = stands.at((step, side)), 1e-6
     at = {name: walk.curves[name][node, side] for name in ("pitch", "meta")}
-    rate = {name: slopes[node, columns[name].start + side] for name in at}
+    rate = {name: slopes[node, ROWS[name].start + side] for name in at}
 
     def ankle(ahead_of: float) -> Float[np.ndarray, "k 3"]:
         pitch, meta = (at[name] + ahead_of * rate[name] for name in at)
         return stand.ankle(body.foot, pitch, meta)
 
     speed = (ankle(tiny) - ankle(-tiny)) / (2.0 * tiny)
-    column = columns["ankle"].start + 3 * side[:, None] + np.arange(3)
+    column = ROWS["ankle"].start + 3 * side[:, None] + np.arange(3)
     slopes[node[:, None], column] = speed
 
 

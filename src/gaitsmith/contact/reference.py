@@ -3,162 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith._checks import frozen_array
+from gaitsmith.contact.step_curves import CURVES, FINEST, StepCurves, curve_of
 from gaitsmith.errors import InvalidInputError
-from gaitsmith.geometry.curves import (
-    end_slope_correction,
-    hermite,
-    pchip_slopes,
-)
+from gaitsmith.geometry.curves import end_slope_correction
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from jaxtyping import Bool, Float, Int
 
-#: Fields of StepCurves that are sampled on its phases, with their shape after (T,).
-CURVES: dict[str, tuple[int | None, ...]] = {
-    "center": (3,),
-    "heading": (),
-    "pelvis": (3,),
-    "ankle": (2, 3),
-    "foot_heading": (2,),
-    "pitch": (2,),
-    "meta": (2,),
-    "bend": (2,),
-    "upper": (None, 3),
-}
-#: Farthest that two samples may be apart for the contact stage.
-FINEST = 1.0 / 36.0
-#: Those that are positions, and so move with the step.
+#: Curves that are positions, and so move with the step.
 PLACES = ("center", "ankle")
-
-
-@dataclass(frozen=True, eq=False)
-class StepCurves:
-    """Curves of one step as a walker proposes them, before the feet meet the ground.
-
-    World axes, meters and radians; positions are relative to a point that
-    :class:`ReferenceStep` names, so that equal steps share their curves. Side axes are
-    [left, right].
-
-    Attributes
-    ----------
-    phase
-        ``(T,)`` from 0 to 1; holds the toe-off.
-    center, heading, pelvis
-        ``(T, 3)`` mid-point of the hips; ``(T,)`` heading of the walk, unwrapped; ``(T, 3)``
-        rotation vector of the pelvis in the heading's frame.
-    ankle
-        ``(T, 2, 3)``; where a foot bears, the contact stage replaces it.
-    foot_heading
-        ``(T, 2)``, unwrapped.
-    pitch, meta, bend
-        ``(T, 2)`` sole pitch, toes against the floor, toes against the sole, as in
-        :class:`gaitsmith.walks.model.SagittalStep`, against the foothold's plane.
-    upper
-        ``(T, U, 3)`` local rotation vectors of the upper body's joints.
-    """
-
-    phase: Float[np.ndarray, "T"]
-    center: Float[np.ndarray, "T 3"]
-    heading: Float[np.ndarray, "T"]
-    pelvis: Float[np.ndarray, "T 3"]
-    ankle: Float[np.ndarray, "T 2 3"]
-    foot_heading: Float[np.ndarray, "T 2"]
-    pitch: Float[np.ndarray, "T 2"]
-    meta: Float[np.ndarray, "T 2"]
-    bend: Float[np.ndarray, "T 2"]
-    upper: Float[np.ndarray, "T U 3"]
-
-    def __post_init__(self) -> None:
-        """Copy, check and freeze the arrays."""
-        n = len(self.phase)
-        object.__setattr__(self, "phase", frozen_array("phase", self.phase, (n,)))
-        for name, shape in CURVES.items():
-            array = frozen_array(name, getattr(self, name), (n, *shape))
-            object.__setattr__(self, name, array)
-        if self.phase[0] != 0.0 or self.phase[-1] != 1.0 or (np.diff(self.phase) <= 0.0).any():
-            raise InvalidInputError("phase must rise from 0 to 1 without repeating")
-
-    @staticmethod
-    def trusted(**curves: Float[np.ndarray, "T ..."]) -> StepCurves:
-        """Curves that are known to be right, taken as they are: for batches checked as a whole."""
-        out = object.__new__(StepCurves)
-        out.__dict__.update(curves)
-        return out
-
-    def with_(self, **changes: object) -> StepCurves:
-        """Copy with some fields replaced; the copy is checked again."""
-        return replace(self, **changes)  # type: ignore[arg-type]
-
-    def refined(self, *events: float) -> StepCurves:
-        """The same curves on samples well closer than :data:`FINEST`; itself if they are closer.
-
-        The contact stage corrects on samples: a coarse walk would escape it between them.
-        ``events`` are phases at which a curve may have a corner; none is read across them.
-        """
-        if np.diff(self.phase).max() <= FINEST * (1.0 + 1e-9):
-            return self
-        marks = np.array(sorted({0.0, *(e for e in events if 0.0 < e < 1.0), 1.0}))
-        pieces = []
-        for first, last in pairwise(marks):
-            own = self.phase[(self.phase >= first) & (self.phase <= last)]
-            more = [
-                np.linspace(a, b, int(np.ceil(2.0 * (b - a) / FINEST)) + 1)[:-1]
-                for a, b in pairwise(own)
-            ]
-            pieces.append((own, np.concatenate([*more, [last]])))
-        phase = np.concatenate(
-            [p[: None if i == len(pieces) - 1 else -1] for i, (_, p) in enumerate(pieces)]
-        )
-        curves = {}
-        for name in CURVES:
-            values = getattr(self, name)
-            flat = values.reshape(len(values), -1)
-            read = []
-            for i, (own, fine) in enumerate(pieces):
-                rows = flat[(self.phase >= own[0]) & (self.phase <= own[-1])]
-                fine = fine if i == len(pieces) - 1 else fine[:-1]
-                read.append(hermite(own, rows, pchip_slopes(own, rows), fine))
-            curves[name] = np.concatenate(read).reshape(len(phase), *values.shape[1:])
-        return StepCurves(phase=phase, **curves)
-
-    @property
-    def end_speeds(self) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
-        """Speed of the center at phase 0 and at phase 1, meters per step."""
-        first, last = end_speeds([self])
-        return first[0], last[0]
-
-
-def end_speeds(
-    curves: Sequence[StepCurves],
-) -> tuple[Float[np.ndarray, "S 3"], Float[np.ndarray, "S 3"]]:
-    """Speeds of the centers at phase 0 and at phase 1, meters per step."""
-    own = list({id(c): c for c in curves}.values())
-    index = {id(c): i for i, c in enumerate(own)}
-    each = np.array([index[id(c)] for c in curves])
-    out = []
-    for samples in ([0, 1, 2], [-1, -2, -3]):
-        x = np.array([_three(c.phase, samples) for c in own])
-        y = np.array([_three(c.center, samples) for c in own])
-        h0, h1 = (x[:, 1] - x[:, 0])[:, None], (x[:, 2] - x[:, 1])[:, None]
-        d0, d1 = (y[:, 1] - y[:, 0]) / h0, (y[:, 2] - y[:, 1]) / h1
-        out.append(((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1))
-    return out[0][each], out[1][each]
-
-
-def _three(values: Float[np.ndarray, "T *c"], samples: list[int]) -> Float[np.ndarray, "3 *c"]:
-    """Three samples at an end; of two, a third on their line."""
-    if len(values) > 2:
-        return values[samples]
-    first, second = values[samples[0]], values[samples[1]]
-    return np.array([first, second, 2.0 * second - first])
 
 
 @dataclass(frozen=True, eq=False)
@@ -264,21 +124,17 @@ class SwingEnd:
     @staticmethod
     def of(steps: Sequence[ReferenceStep], *, at_end: bool) -> SwingEnd:
         """Read it off the steps' own samples."""
-        places: dict[tuple[int, float], int] = {}
-        for s in steps:
-            key = (id(s.curves.phase), s.toe_off)
-            if not at_end and key not in places:
-                places[key] = int(s.curves.phase.searchsorted(min(s.toe_off, 1.0)))
-        picks = [
-            (s.curves, -1 if at_end else places[id(s.curves.phase), s.toe_off], 1 - s.stance)
-            for s in steps
-        ]
-        origin = np.array([s.origin for s in steps])
-        return SwingEnd(
-            ankle=origin + np.array([c.ankle[i, side] for c, i, side in picks]),
-            heading=np.array([c.foot_heading[i, side] for c, i, side in picks]),
-            pitch=np.array([c.pitch[i, side] for c, i, side in picks]),
+        if at_end:
+            place = [-1] * len(steps)
+        else:
+            place = [int(s.curves.phase.searchsorted(min(s.toe_off, 1.0))) for s in steps]
+        samples = [s.curves.table[:, i] for s, i in zip(steps, place, strict=True)]
+        table = np.array(samples).T
+        every, swing = np.arange(len(steps)), np.array([1 - s.stance for s in steps])
+        ankle, heading, pitch = (
+            curve_of(table, name)[every, swing] for name in ("ankle", "foot_heading", "pitch")
         )
+        return SwingEnd(np.array([s.origin for s in steps]) + ankle, heading, pitch)
 
 
 @dataclass(eq=False)
@@ -296,8 +152,8 @@ class Proposal:
         events); 1 at the very last node.
     step
         ``(M,)`` index of the step.
-    curves
-        The fields of :data:`CURVES`, ``(M, ...)``, writable.
+    table
+        ``(C, M)`` all curves, writable; rows as in :class:`StepCurves`.
     stance, toe_off, foothold, foothold_heading, target, target_heading
         ``(S, ...)`` of each step.
     leaving, landing
@@ -307,7 +163,7 @@ class Proposal:
     at: Float[np.ndarray, "M"]
     phase: Float[np.ndarray, "M"]
     step: Int[np.ndarray, "M"]
-    curves: dict[str, Float[np.ndarray, "M ..."]]
+    table: Float[np.ndarray, "C M"]
     stance: Int[np.ndarray, "S"]
     toe_off: Float[np.ndarray, "S"]
     foothold: Float[np.ndarray, "S 2 3"]
@@ -316,6 +172,11 @@ class Proposal:
     target_heading: Float[np.ndarray, "S"]
     leaving: SwingEnd
     landing: SwingEnd
+
+    @cached_property
+    def curves(self) -> dict[str, Float[np.ndarray, "M ..."]]:
+        """The curves by name: views of the table, each component contiguous."""
+        return {name: curve_of(self.table, name) for name in CURVES}
 
     def bearing(self) -> Bool[np.ndarray, "M 2"]:
         """Whether each foot stands on its foothold."""
@@ -339,28 +200,26 @@ def stack(steps: Sequence[ReferenceStep]) -> Proposal:
     """Put the proposals of consecutive steps on one axis."""
     if not steps:
         raise InvalidInputError("a walk needs at least one step")
-    last = len(steps) - 1
     steps = _fine(steps)
-
-    def joined(name: str) -> Float[np.ndarray, "M ..."]:
-        parts = [getattr(s.curves, name)[: None if i == last else -1] for i, s in enumerate(steps)]
-        return np.concatenate(parts)
-
-    counts = [len(s.curves.phase) - (i != last) for i, s in enumerate(steps)]
+    own = [slice(None, -1)] * (len(steps) - 1) + [slice(None)]
+    counts = [len(s.curves.phase) - 1 for s in steps]
+    counts[-1] += 1
     index = np.repeat(np.arange(len(steps)), counts)
-    curves = {name: joined(name) for name in CURVES}
-    origin = np.array([s.origin for s in steps])[index]
-    for name in PLACES:
-        curves[name] += origin if name == "center" else origin[:, None]
-    phase = joined("phase")
+    phase = np.concatenate([s.curves.phase[i] for s, i in zip(steps, own, strict=True)])
+    table = np.concatenate([s.curves.table[:, i] for s, i in zip(steps, own, strict=True)], axis=1)
+    origin = np.repeat(np.array([s.origin for s in steps]).T, counts, axis=1).T
+    center, ankle = (curve_of(table, name) for name in PLACES)
+    center += origin
+    ankle += origin[:, None]
     none = (np.zeros(3), np.zeros(3))
-    change = np.array([s.speed_change or none for s in steps])[index]
-    curves["center"] += end_slope_correction(phase, change[:, 0], change[:, 1])
+    change = np.array([s.speed_change or none for s in steps])
+    begin, end = (np.repeat(change[:, i].T, counts, axis=1).T for i in (0, 1))
+    center += end_slope_correction(phase, begin, end)
     return Proposal(
         at=phase + index,
         phase=phase,
         step=index,
-        curves=curves,
+        table=table,
         stance=np.array([s.stance for s in steps]),
         toe_off=np.array([s.toe_off for s in steps]),
         foothold=np.array([s.foothold for s in steps]),

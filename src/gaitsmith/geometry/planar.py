@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaitsmith.geometry.angles import sine_cosine
+
 if TYPE_CHECKING:
     from jaxtyping import Float
 
@@ -23,8 +25,8 @@ def feet_apart(
 ) -> Float[np.ndarray, "n"]:
     """Distance of two foot axes seen from above, heel to toe tip, meters; 0 where they cross."""
     # x and z apart: rows of two are slow to work on
-    sin, cos = np.sin(heading), np.cos(heading)
-    stand_sin, stand_cos = np.sin(stand_heading), np.cos(stand_heading)
+    sin, cos = sine_cosine(heading)
+    stand_sin, stand_cos = sine_cosine(stand_heading)
     a = (ankle[:, 0] - back * sin, ankle[:, 1] - back * cos)
     b = (ankle[:, 0] + front * sin, ankle[:, 1] + front * cos)
     c = (stand[:, 0] - back * stand_sin, stand[:, 1] - back * stand_cos)

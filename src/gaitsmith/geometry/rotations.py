@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.errors import InvalidInputError
+from gaitsmith.geometry.angles import sine_cosine
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 IDENTITY.flags.writeable = False
+_NO_ANGLE = 1e-150
 
 
 def component_major(shape: tuple[int, ...], components: int) -> Float[np.ndarray, "*n c"]:
@@ -66,9 +68,8 @@ def about(axis: str, angle: Float[np.ndarray, "*n"] | float) -> Float[np.ndarray
     """Rotations by ``angle`` radians about a coordinate axis, ``"x"``, ``"y"`` or ``"z"``."""
     half = 0.5 * np.asarray(angle, dtype=np.float64)
     out = component_major(half.shape, 4)
-    for i in range(3):
-        out[..., i] = np.sin(half) if i == "xyz".index(axis) else 0.0
-    out[..., 3] = np.cos(half)
+    out[..., :3] = 0.0
+    out[..., "xyz".index(axis)], out[..., 3] = sine_cosine(half)
     return out
 
 
@@ -77,7 +78,7 @@ def turned_left(
 ) -> Float[np.ndarray, "*n 4"]:
     """``q``, then turned left about +Y by ``heading`` radians."""
     half = 0.5 * heading
-    s, c = np.sin(half), np.cos(half)
+    s, c = sine_cosine(half)
     x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
     out = component_major(np.broadcast_shapes(half.shape, x.shape), 4)
     out[..., 0] = c * x + s * z
@@ -100,17 +101,14 @@ def left_of(q: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n 3"]:
 def exp(vector: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 4"]:
     """Rotation by ``|vector|`` radians about ``vector``; exact at and near zero."""
     x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
-    half = 0.5 * np.sqrt(x * x + y * y + z * z)
-    none = half == 0.0
-    # sin(h) / 2h, which is 1/2 at zero
-    if np.any(none):
-        scale = np.where(none, 0.5, 0.5 * np.sin(half) / np.where(none, 1.0, half))
-    else:
-        scale = 0.5 * np.sin(half) / half
+    # at zero a length that is none: its sine is itself, and the square of it still a number
+    half = np.maximum(0.5 * np.sqrt(x * x + y * y + z * z), _NO_ANGLE)
+    sine, cosine = sine_cosine(half)
+    scale = 0.5 * sine / half
     out = component_major(vector.shape[:-1], 4)
     for i, component in enumerate((x, y, z)):
-        out[..., i] = component * scale
-    out[..., 3] = np.cos(half)
+        np.multiply(component, scale, out=out[..., i])
+    out[..., 3] = cosine
     return out
 
 

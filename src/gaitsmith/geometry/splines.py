@@ -7,6 +7,7 @@ step of a walk is read at once. NumPy only.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -158,6 +159,13 @@ class PlaneCurves:
         apart = np.ascontiguousarray(self.coefficients.transpose(0, 2, 1))
         return PlaneCurves(np.take(apart, index, axis=2).transpose(0, 2, 1))
 
+    @cached_property
+    def _slope(self) -> PlaneCurves:
+        """The first derivative, a curve itself."""
+        powers = np.arange(1.0, len(self.coefficients))[:, None, None]
+        apart = self.coefficients[1:].transpose(0, 2, 1)
+        return PlaneCurves((powers * apart).transpose(0, 2, 1))
+
     def at(self, u: Float[np.ndarray, "S"]) -> Float[np.ndarray, "S 2"]:
         """Each curve at its own parameter."""
         out = np.empty((2, len(u)))
@@ -170,14 +178,7 @@ class PlaneCurves:
 
     def derivative(self, u: Float[np.ndarray, "S"]) -> Float[np.ndarray, "S 2"]:
         """First derivative of each at its own parameter."""
-        degree = len(self.coefficients) - 1
-        out = np.empty((2, len(u)))
-        for axis, value in enumerate(out):
-            np.multiply(self.coefficients[-1, :, axis], degree, out=value)
-            for k in range(degree - 1, 0, -1):
-                value *= u
-                value += k * self.coefficients[k, :, axis]
-        return out.T
+        return self._slope.at(u)
 
     def speed(self, u: Float[np.ndarray, "S"]) -> Float[np.ndarray, "S"]:
         """Length of the first derivative."""
@@ -186,8 +187,9 @@ class PlaneCurves:
 
     def length(self) -> Float[np.ndarray, "S"]:
         """Arc length of each."""
-        return self._arcs()[:, -1]
+        return self._arcs[:, -1]
 
+    @cached_property
     def _arcs(self) -> Float[np.ndarray, "S cells+1"]:
         """Arc lengths at the ends of equal cells of the parameter, by Gauss in each."""
         cells = np.arange(CELLS) / CELLS
@@ -211,7 +213,13 @@ class PlaneCurves:
 
         Read off a table by cubics, then one step of Newton: right to about 1e-11.
         """
-        arcs = self._arcs()
+        return self.located(row, along)[1]
+
+    def located(
+        self, row: Int[np.ndarray, "m"], along: Float[np.ndarray, "m"]
+    ) -> tuple[PlaneCurves, Float[np.ndarray, "m"]]:
+        """The curves ``row``, and the :meth:`parameter` on each."""
+        arcs = self._arcs
         whole = np.maximum(arcs[:, -1:], 1e-12)
         share = arcs / whole
         aim = np.clip(along / whole[row, 0], 0.0, 1.0)
@@ -234,4 +242,4 @@ class PlaneCurves:
             gone += weight * curve.speed(edges[cell] + node * rise)
         miss = gone * rise - (aim - first) * whole[row, 0]
         size = np.maximum(curve.speed(edges[cell] + rise), 0.02 * whole[row, 0])
-        return np.clip(edges[cell] + rise - miss / size, 0.0, 1.0)
+        return curve, np.clip(edges[cell] + rise - miss / size, 0.0, 1.0)

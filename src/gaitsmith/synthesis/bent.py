@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.conventions import SIDE_SIGN
+from gaitsmith.geometry.angles import sine_cosine
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.plan.course import course_pieces
 from gaitsmith.synthesis.asking import COLUMNS
@@ -78,13 +79,25 @@ class Bent:
         )
 
     @cached_property
+    def curves(self) -> PlaneCurves:
+        """The S curves from beside the rear foot to the stance foot, then those to the target."""
+        middle, direction, curvature = self.middle, self.direction, self.curvature
+        start, end = (np.concatenate([middle[:, i], middle[:, i + 1]]) for i in (0, 1))
+        turned, bend = (
+            tuple(np.concatenate([values[:, i], values[:, i + 1]]) for i in (0, 1))
+            for values in (direction, curvature)
+        )
+        return course_pieces(start, end, (turned[0], turned[1]), (bend[0], bend[1]))
+
+    @cached_property
     def length(self) -> Float[np.ndarray, "S 2"]:
         """Arc lengths of the curves before and after."""
-        both = pieces(self.middle, self.direction, self.curvature)
-        return np.stack([p.length() for p in both], axis=-1)
+        return self.curves.length().reshape(2, -1).T
 
     def rows(self, index: Int[np.ndarray, "k"]) -> Bent:
-        """Some of the steps."""
+        """Some of the steps, in their order."""
+        if len(index) == len(self.stance):
+            return self
         return Bent(*(getattr(self, f.name)[index] for f in fields(self)))
 
     def straight(self, steps: Sequence[PlannedStep]) -> Bool[np.ndarray, "S"]:
@@ -94,7 +107,7 @@ class Bent:
         """
         out = (self.direction == self.direction[:, 1:2]).all(-1)
         out &= ~(self.lean.any(axis=(1, 2)) | self.gaze.any(axis=(1, 2)))
-        sin, cos = np.sin(self.direction[:, 1:2]), np.cos(self.direction[:, 1:2])
+        sin, cos = sine_cosine(self.direction[:, 1:2])
         away = self.place - self.place[:, 1:2]
         along = away[..., 0] * sin + away[..., 1] * cos
         aside = away[..., 0] * cos - away[..., 1] * sin
@@ -111,8 +124,8 @@ class Flat2D:
 
     Attributes
     ----------
-    first
-        ``(S,)`` index of each step's first sample.
+    first, counts
+        ``(S,)`` index of each step's first sample, and how many it has.
     step
         ``(M,)`` index of the step of each sample.
     swing
@@ -122,6 +135,7 @@ class Flat2D:
     """
 
     first: Int[np.ndarray, "S"]
+    counts: Int[np.ndarray, "S"]
     step: Int[np.ndarray, "M"]
     off: Int[np.ndarray, "S"]
     phase: Float[np.ndarray, "M"]
@@ -141,28 +155,35 @@ class Flat2D:
         phase = np.concatenate([s.phase for s in answers])
         toe_off = np.array([s.toe_off for s in answers])
         off = first + np.array([int(s.phase.searchsorted(s.toe_off)) for s in answers])
-        swing = np.maximum((phase - toe_off[step]) / (1.0 - toe_off[step]), 0.0)
+        lifted = np.repeat(toe_off, counts)
+        swing = np.maximum((phase - lifted) / (1.0 - lifted), 0.0)
         asked = np.array([(s.previous, s.length) for s in answers])
         # each column contiguous: they are worked on one by one
         curves = np.concatenate([s.curves.T for s in answers], axis=1).T
-        center = np.array(curves[:, COLUMNS["center"]])
+        center = np.array(curves[:, COLUMNS["center"]], order="F")
         # very short steps are asked for longer: smoothly pressed together over the step
         ratio = np.where(asked > 0.0, length / np.where(asked > 0.0, asked, 1.0), 1.0)
         ratio = np.where(np.abs(ratio - 1.0) < 1e-9, 1.0, ratio)
         ease = smoothstep(phase)
-        center[:, 0] *= ratio[step, 0] + ease * (ratio[step, 1] - ratio[step, 0])
+        early, late = np.repeat(ratio.T, counts, axis=1)
+        center[:, 0] *= early + ease * (late - early)
         return Flat2D(
             first=first,
+            counts=counts,
             step=step,
             off=off,
             phase=phase,
             toe_off=toe_off,
             swing=swing,
             center=center,
-            ankle=curves[:, COLUMNS["ankle"]].reshape(-1, 2, 2),
+            ankle=curves.T[COLUMNS["ankle"]].reshape(2, 2, -1).transpose(2, 0, 1),
             asked=asked,
             curves=curves,
         )
+
+    def each(self, values: Float[np.ndarray, "S *c"]) -> Float[np.ndarray, "M *c"]:
+        """What belongs to a step, given to each of its samples; components contiguous."""
+        return np.repeat(values.T, self.counts, axis=-1).T
 
     def column(self, name: str) -> Float[np.ndarray, "M c"]:
         """Samples of one of the curves."""
@@ -171,22 +192,4 @@ class Flat2D:
     @property
     def last(self) -> Int[np.ndarray, "S"]:
         """Index of each step's last sample."""
-        return np.concatenate([self.first[1:] - 1, [len(self.step) - 1]])
-
-
-def pieces(
-    middle: Float[np.ndarray, "S 3 2"],
-    direction: Float[np.ndarray, "S 3"],
-    curvature: Float[np.ndarray, "S 3"],
-) -> tuple[PlaneCurves, PlaneCurves]:
-    """Curves from beside the rear foot to the stance foot, and on to the target."""
-    before, after = (
-        course_pieces(
-            middle[:, i],
-            middle[:, i + 1],
-            (direction[:, i], direction[:, i + 1]),
-            (curvature[:, i], curvature[:, i + 1]),
-        )
-        for i in (0, 1)
-    )
-    return before, after
+        return self.first + self.counts - 1

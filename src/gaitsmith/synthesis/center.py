@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaitsmith.geometry.angles import sine_cosine
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.splines import PlaneCurves
-from gaitsmith.synthesis.bent import pieces
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
@@ -44,31 +44,28 @@ def track(
     stance foot: negative is still on the curve before. All lengths are those of the 2D step,
     so Eq. 3 of the paper holds by itself, nothing is searched, and nothing drifts.
     """
-    i = flat.step
     x = flat.center[:, 0]
     later = x >= 0.0
-    before, after = pieces(bent.middle, bent.direction, bent.curvature)
-    rows = np.where(later, i + len(bent.sign), i)
-    both = PlaneCurves(np.concatenate([before.coefficients, after.coefficients], axis=1))
-    whole = np.concatenate([bent.length[:, 0], bent.length[:, 1]])[rows]
+    row = np.where(later, flat.step + len(bent.sign), flat.step)
+    whole = np.where(later, flat.each(bent.length[:, 1]), flat.each(bent.length[:, 0]))
     along = np.where(later, x, x + whole)
-    curve = both.rows(rows)
+    curve, u = bent.curves.located(row, along)
     degenerate = whole < 1e-9
-    u = np.where(degenerate, np.where(later, 0.0, 1.0), both.parameter(rows, along))
+    u = np.where(degenerate, np.where(later, 0.0, 1.0), u)
     tangent = curve.derivative(u)
-    base = np.where(later, bent.direction[i, 1], bent.direction[i, 0])
+    stands = flat.each(bent.direction[:, 1])
+    base = np.where(later, stands, flat.each(bent.direction[:, 0]))
     here = np.where(degenerate, 0.0, np.arctan2(tangent[:, 0], tangent[:, 1]) - base)
-    here = np.arctan2(np.sin(here), np.cos(here))
-    here = np.where(np.abs(here) < 1e-13, 0.0, here)
-    heading = np.where(degenerate, bent.direction[i, 1], base + here)
-    way = np.stack([np.sin(heading), np.cos(heading)], axis=-1)
+    here -= 2.0 * np.pi * np.rint(here / (2.0 * np.pi))
+    here[np.abs(here) < 1e-13] = 0.0
+    heading = np.where(degenerate, stands, base + here)
+    way, left = _way_and_left(heading)
     over = np.where(along > whole, along - whole, np.minimum(along, 0.0))
     place = curve.at(u) + over[:, None] * way
 
-    chords = np.sqrt((both.coefficients[1] ** 2).sum(-1))
-    lean, lean_rate = _led(bent.lean, chords, rows, u)
-    gaze, _ = _led(bent.gaze, chords, rows, u)
-    left = np.stack([np.cos(heading), -np.sin(heading)], axis=-1)
+    chords = np.sqrt((bent.curves.coefficients[1] ** 2).sum(-1))
+    lean, lean_rate = _led(bent.lean, chords, row, u)
+    gaze, _ = _led(bent.gaze, chords, row, u)
     place = place + (offset * lean)[:, None] * left
     # hips that draw inside or come back face where they go themselves
     heading = heading + np.arctan(offset * lean_rate)
@@ -76,8 +73,17 @@ def track(
     if standing.any():
         begins = 1.0 - smoothstep(flat.phase / STANDING_SHARE)
         ends = smoothstep((flat.phase - 1.0 + STANDING_SHARE) / STANDING_SHARE)
-        place = place + begins[:, None] * standing[i, 0] + ends[:, None] * standing[i, 1]
+        place = place + begins[:, None] * flat.each(standing[:, 0])
+        place = place + ends[:, None] * flat.each(standing[:, 1])
     return CenterPath(place, heading, left, lean, gaze, resting)
+
+
+def _way_and_left(
+    heading: Float[np.ndarray, "n"],
+) -> tuple[Float[np.ndarray, "n 2"], Float[np.ndarray, "n 2"]]:
+    """x,z of ahead and of the left."""
+    sine, cosine = sine_cosine(heading)
+    return np.array([sine, cosine]).T, np.array([cosine, -sine]).T
 
 
 def _led(
@@ -131,15 +137,14 @@ def anchored(
     spline = PlaneCurves.hermite(here, there, size * way[:, 1], size * way[:, 2])
     whole = spline.length()
     share = (x - x[off][i]) / np.maximum((x[last] - x[off])[i], 1e-9)
-    curve = spline.rows(i)
-    u = spline.parameter(i, np.clip(share, 0.0, 1.0) * whole[i])
+    curve, u = spline.located(i, np.clip(share, 0.0, 1.0) * whole[i])
     tangent = curve.derivative(u)
     turn = np.arctan2(tangent[:, 0], tangent[:, 1]) - bent.direction[i, 1]
-    turn = np.arctan2(np.sin(turn), np.cos(turn))
+    turn -= 2.0 * np.pi * np.rint(turn / (2.0 * np.pi))
     flying = np.arange(len(i)) > off[i]
     heading = bent.direction[i, 1] + np.where(flying, turn, 0.0)
     place = np.where(flying[:, None], curve.at(u), straight)
-    left = np.stack([np.cos(heading), -np.sin(heading)], axis=-1)
+    _, left = _way_and_left(heading)
     place = place + (offset * tracked.lean)[:, None] * left
     held = (bent.length[:, 0] < 1e-9) | (bent.length[:, 1] < 1e-9)  # starts and stops: as above
     held = held | np.any(standing != 0.0, axis=(1, 2))
@@ -154,7 +159,7 @@ def anchored(
     ease = smoothstep(flat.phase)
     held_place = tracked_place + (1.0 - ease)[:, None] * start[i] + ease[:, None] * end[i]
     held_heading = tracked.heading + (1.0 - ease) * turn0[i] + ease * turn1[i]
-    held_left = np.stack([np.cos(held_heading), -np.sin(held_heading)], axis=-1)
+    _, held_left = _way_and_left(held_heading)
     held_place = held_place + (offset * tracked.lean)[:, None] * held_left
     return CenterPath(
         np.where(keep[:, None], held_place, place),

@@ -16,6 +16,8 @@ import numpy as np
 
 from gaitsmith._checks import one_of
 from gaitsmith.contact import ReferenceStep, StepCurves
+from gaitsmith.contact.step_curves import CURVES, WIDTH, curve_of
+from gaitsmith.conventions import LEFT, RIGHT
 from gaitsmith.errors import InfeasibleStepError, InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.plan.course import lean_lever
@@ -168,19 +170,27 @@ class CurvedGenerator:
         flat = Flat2D.of(answers, bent.length)
         offset = lean_lever(body) if self._banking == "body" else 0.0
         draw = track if self._mode == "track" else anchored
-        center = draw(bent, flat, offset, standing=_standing(steps))
-        height = _height(body, bent, flat, center)
-        ankle, foot_heading = SwingPath.of(body, bent, flat).read(bent, flat)
-        center_out = np.empty((len(flat.step), 3))
-        place = center.place + flat.column("sway") * center.left
-        center_out[:, 0], center_out[:, 1], center_out[:, 2] = place[:, 0], height, place[:, 1]
+        path = draw(bent, flat, offset, standing=_standing(steps))
+        upper = flat.column("upper").reshape(len(flat.step), -1, 3)
         trunk = TRUNK_LEAN.get(self._banking, 0.0)
-        upper = bent_upper(
-            body, flat.column("upper").reshape(len(place), -1, 3), center.gaze, trunk * center.lean
-        )
-        return self._cut(
-            body, steps, bent, flat, answers, center, center_out, ankle, foot_heading, upper
-        )
+        table = np.empty((WIDTH + 3 * upper.shape[1], len(flat.step)))
+        curves = {name: curve_of(table, name) for name in CURVES}
+        place = path.place + flat.column("sway") * path.left
+        curves["center"][:, [0, 2]] = place
+        curves["center"][:, 1] = _height(body, bent, flat, path)
+        curves["heading"][:] = path.heading
+        curves["pelvis"][:] = flat.column("pelvis")
+        SwingPath.of(body, bent, flat).read(bent, flat, curves["ankle"], curves["foot_heading"])
+        left = flat.each(bent.stance == LEFT)
+        for name in ("pitch", "meta", "bend"):  # of (stance, swing) to (left, right)
+            stance, swing = flat.column(name).T
+            curves[name][:, LEFT] = np.where(left, stance, swing)
+            curves[name][:, RIGHT] = np.where(left, swing, stance)
+        curves["upper"][:] = bent_upper(body, upper, path.gaze, trunk * path.lean)
+        for name, values in curves.items():
+            if not np.isfinite(values).all():
+                raise InvalidInputError(f"{name} of a step is not finite; its walk is no good")
+        return self._cut(body, steps, bent, flat, answers, table)
 
     def _cut(
         self,
@@ -189,55 +199,33 @@ class CurvedGenerator:
         bent: Bent,
         flat: Flat2D,
         answers: Sequence[Answer],
-        path: CenterPath,
-        center: Float[np.ndarray, "M 3"],
-        ankle: Float[np.ndarray, "M 2 3"],
-        foot_heading: Float[np.ndarray, "M 2"],
-        upper: Float[np.ndarray, "M U 3"],
+        table: Float[np.ndarray, "C M"],
     ) -> list[PreparedStep]:
         """Steps of their own again."""
-        out: list[PreparedStep] = []
-        for name, values in (("center", center), ("ankle", ankle), ("upper", upper)):
-            if not np.isfinite(values).all():
-                raise InvalidInputError(f"{name} of a step is not finite; its walk is no good")
-        origin = np.stack([s.stance.position for s in steps])
-        center[:, [0, 2]] -= origin[flat.step][:, [0, 2]]
-        ankle[..., [0, 2]] -= origin[flat.step][:, None][..., [0, 2]]
-        pair = np.stack([bent.stance, 1 - bent.stance], axis=-1)[flat.step]  # of (left, right)
-        legs = {
-            name: np.take_along_axis(flat.column(name), pair, axis=1)
-            for name in ("pitch", "meta", "bend")
-        }
-        sides = np.arange(len(steps))
+        origin = np.array([s.stance.position for s in steps])
+        away = flat.each(origin * [1.0, 0.0, 1.0])  # heights are from the stance foot's floor
+        curve_of(table, "center")[:] -= away
+        curve_of(table, "ankle")[:] -= away[:, None]
         foothold, heading = np.empty((len(steps), 2, 3)), np.empty((len(steps), 2))
+        every = np.arange(len(steps))
         for k, side in ((0, 1 - bent.stance), (1, bent.stance)):
-            foothold[sides, side] = [(s.origin, s.stance)[k].position for s in steps]
-            heading[sides, side] = bent.heading[:, k]
-        pelvis = flat.column("pelvis")
+            foothold[every, side] = [(s.origin, s.stance)[k].position for s in steps]
+            heading[every, side] = bent.heading[:, k]
+        first = [*flat.first.tolist(), len(flat.step)]
+        out: list[PreparedStep] = []
         for i, (step, answer) in enumerate(zip(steps, answers, strict=True)):
-            rows = slice(int(flat.first[i]), int(flat.first[i]) + len(answer.phase))
-            curves = StepCurves.trusted(
-                phase=answer.phase,
-                center=center[rows],
-                heading=path.heading[rows],
-                pelvis=pelvis[rows],
-                ankle=ankle[rows],
-                foot_heading=foot_heading[rows],
-                upper=upper[rows],
-                **{name: values[rows] for name, values in legs.items()},
-            )
-            target = step.target
+            stance, target = step.stance, step.target
             reference = ReferenceStep.trusted(
-                curves,
+                StepCurves.trusted(answer.phase, table[:, first[i] : first[i + 1]]),
                 origin[i],
-                step.stance.side,
+                stance.side,
                 answer.toe_off,
                 foothold[i],
                 heading[i],
                 target.position,
                 target.heading,
             )
-            rise = float(target.position[1] - step.stance.position[1])
+            rise = float(target.position[1] - stance.position[1])
             end = WalkerState(float(answer.curves[-1, 1]) - rise, step.duration)
             out.append(TabledStep(step.duration, end, reference, body, self._ground))
         return out
@@ -321,22 +309,17 @@ def _height(body: Body, bent: Bent, flat: Flat2D, center: CenterPath) -> Float[n
     With the STANCE hip (erratum D9). At the start of a step the height is the one the step
     before ended with; the difference is gone by toe-off.
     """
-    i, up = flat.step, flat.center[:, 1]
+    up = flat.center[:, 1]
     over_ankle = up - body.foot.ankle_height
     stands = bent.place[:, 1]
     aside = ((stands - bent.middle[:, 1]) * _left(bent.direction[:, 1])).sum(-1)
     half = 0.5 * body.hip_width
-    straight = flat.center[:, 0] ** 2 + (half - bent.sign * aside)[i] ** 2
+    straight = flat.center[:, 0] ** 2 + flat.each((half - bent.sign * aside) ** 2)
 
-    def raised(
-        place: np.ndarray, left: np.ndarray, which: np.ndarray, of: np.ndarray
-    ) -> Float[np.ndarray, "m"]:
-        hip = place + (half * bent.sign[which])[:, None] * left - stands[which]
-        square = over_ankle[of] ** 2 + straight[of] - (hip * hip).sum(-1)
-        return np.sqrt(np.maximum(square, (0.5 * over_ankle[of]) ** 2)) - over_ankle[of]
-
-    every = np.arange(len(i))
-    extra = raised(center.place, center.left, i, every)
+    # the stance hip from the stance foot
+    x, z = (center.place + flat.each(half * bent.sign)[:, None] * center.left - flat.each(stands)).T
+    square = over_ankle**2 + straight - (x * x + z * z)
+    extra = np.sqrt(np.maximum(square, (0.5 * over_ankle) ** 2)) - over_ankle
     # what the step before ended with: its stance foot was the rear foot of this one
     start = flat.first
     aside_rear = ((bent.place[:, 0] - bent.middle[:, 0]) * _left(bent.direction[:, 0])).sum(-1)
@@ -347,8 +330,8 @@ def _height(body: Body, bent: Bent, flat: Flat2D, center: CenterPath) -> Float[n
     tall = over_ankle[start]
     reached = np.sqrt(np.maximum(tall**2 + square, (0.5 * tall) ** 2)) - tall
     reached = np.where(center.resting, extra[start], reached)
-    fade = 1.0 - smoothstep(flat.phase / flat.toe_off[i])
-    return up + extra + (reached - extra[start])[i] * fade
+    fade = 1.0 - smoothstep(flat.phase / flat.each(flat.toe_off))
+    return up + extra + flat.each(reached - extra[start]) * fade
 
 
 def _left(direction: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n 2"]:

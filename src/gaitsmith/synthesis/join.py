@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.contact.reference import end_speeds
+from gaitsmith.contact.step_curves import end_speeds
 from gaitsmith.conventions import LOCAL_KINDS
 from gaitsmith.geometry.curves import smoothstep
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 import numpy as np
 
 from gaitsmith.contact import StepCurves, plan_contact
-from gaitsmith.contact.reference import CURVES
+from gaitsmith.contact.step_curves import CURVES
 from gaitsmith.plan.timeline import Timeline
 from gaitsmith.synthesis.attention import Attention
 from gaitsmith.synthesis.clock import Clock

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaitsmith.conventions import LEFT, RIGHT
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.planar import feet_apart
 from gaitsmith.geometry.splines import PlaneCurves
@@ -134,46 +135,48 @@ class SwingPath:
         return SwingPath(weight * best, self.away, self.plan)
 
     def read(
-        self, bent: Bent, flat: Flat2D
-    ) -> tuple[Float[np.ndarray, "M 2 3"], Float[np.ndarray, "M 2"]]:
-        """World ankles and headings of [left, right]; where a foot bears contact replaces them."""
-        every = np.arange(len(flat.step))
-        i = flat.step
+        self,
+        bent: Bent,
+        flat: Flat2D,
+        ankle: Float[np.ndarray, "M 2 3"],
+        headings: Float[np.ndarray, "M 2"],
+    ) -> None:
+        """Write world ankles and headings of [left, right] to ``ankle`` and ``headings``.
+
+        Where a foot bears, contact replaces them.
+        """
         plan, heading = self.plan
-        plan = plan + (self.push[i] * push_shape(flat.swing))[:, None] * self.away[i]
-        ankle = np.empty((len(i), 2, 3))
-        headings = np.empty((len(i), 2))
-        stance = bent.stance[i]
-        ankle[every, stance, 0] = bent.place[i, 1, 0]
-        ankle[every, stance, 2] = bent.place[i, 1, 1]
-        ankle[every, stance, 1] = flat.ankle[:, 0, 1]
-        headings[every, stance] = bent.heading[i, 1]
-        ankle[every, 1 - stance, 0] = plan[:, 0]
-        ankle[every, 1 - stance, 2] = plan[:, 1]
-        ankle[every, 1 - stance, 1] = flat.ankle[:, 1, 1]
-        headings[every, 1 - stance] = heading
-        return ankle, headings
+        plan = plan + (flat.each(self.push) * push_shape(flat.swing))[:, None] * flat.each(
+            self.away
+        )
+        place, stands = flat.each(bent.place[:, 1]), flat.each(bent.heading[:, 1])
+        up = flat.ankle[..., 1]
+        left = flat.each(bent.stance == LEFT)
+        for side, bears in ((LEFT, left), (RIGHT, ~left)):
+            ankle[:, side, 0] = np.where(bears, place[:, 0], plan[:, 0])
+            ankle[:, side, 1] = np.where(bears, up[:, 0], up[:, 1])
+            ankle[:, side, 2] = np.where(bears, place[:, 1], plan[:, 1])
+            headings[:, side] = np.where(bears, stands, heading)
 
 
 def _planned(
     curve: PlaneCurves, whole: Float[np.ndarray, "S"], bent: Bent, flat: Flat2D
 ) -> tuple[Float[np.ndarray, "M 2"], Float[np.ndarray, "M"]]:
     """Ankle and heading of the swing foot, not pushed."""
-    i, ankle = flat.step, flat.ankle[:, 1, 0]
-    begin, end = ankle[flat.off][i], ankle[flat.last][i]
+    ankle = flat.ankle[:, 1, 0]
+    begin, end = flat.each(ankle[flat.off]), flat.each(ankle[flat.last])
     span = end - begin
     moved = np.abs(span) > 1e-6
     share = np.where(moved, (ankle - begin) / np.where(moved, span, 1.0), flat.swing)
-    whole = whole[i]
+    whole = flat.each(whole)
     along = share * whole
-    u = curve.parameter(i, along)
-    own = curve.rows(i)
+    own, u = curve.located(flat.step, along)
     tangent = own.derivative(u)
     # the share leaves [0, 1] where the foot draws back before it lands
     over = np.maximum(along - whole, 0.0) + np.minimum(along, 0.0)
     over /= np.maximum(np.sqrt(tangent[:, 0] ** 2 + tangent[:, 1] ** 2), 1e-12)
-    turned = smoothstep(flat.swing)
-    heading = bent.heading[i, 0] + turned * (bent.heading[i, 2] - bent.heading[i, 0])
+    turned = flat.each(bent.heading[:, 2] - bent.heading[:, 0])
+    heading = flat.each(bent.heading[:, 0]) + smoothstep(flat.swing) * turned
     return own.at(u) + over[:, None] * tangent, heading
 
 
