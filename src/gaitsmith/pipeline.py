@@ -4,31 +4,31 @@ from __future__ import annotations
 
 import json
 import warnings
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from gaitsmith import io
-from gaitsmith._checks import number, one_of, positive
+from gaitsmith._checks import one_of, positive
 from gaitsmith._version import __version__
 from gaitsmith.body.files import body_from_dict, body_to_dict
 from gaitsmith.errors import GaitsmithWarning, InvalidInputError
 from gaitsmith.ground import GROUNDS
 from gaitsmith.learning import body_of, gait_from
+from gaitsmith.motion.holding import held
 from gaitsmith.plan.director import Manners, direct
 from gaitsmith.plan.follow import curve_share, follow
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.given import GivenSteps, plan_given
-from gaitsmith.plan.lengths import Stance
 from gaitsmith.plan.pace import UNUSUAL_FROUDE, Pace, choose_pace, froude
 from gaitsmith.plan.paths import Path as WalkPath
 from gaitsmith.plan.rhythm import Rhythm
-from gaitsmith.plan.script import Script
+from gaitsmith.plan.script import Script, Tempo
+from gaitsmith.plan.start import Start, start_of, start_to_dict
 from gaitsmith.plan.timeline import Timeline
 from gaitsmith.plan.where import read_where
 from gaitsmith.synthesis.curved import BANKINGS, CurvedGenerator
+from gaitsmith.synthesis.habits import own_pace, stance_of
 from gaitsmith.synthesis.mixed import MixedGenerator
 from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
@@ -43,24 +43,15 @@ if TYPE_CHECKING:
     from gaitsmith.body.body import Body
     from gaitsmith.ground import Ground
     from gaitsmith.motion.motion import Motion
+    from gaitsmith.plan.lengths import Stance
     from gaitsmith.plan.script import Action
     from gaitsmith.plan.where import PathLike, StepsLike
-    from gaitsmith.synthesis.gaits import Habits
     from gaitsmith.walks.learned import LearnedGait
 
-#: Step width over stature: 0.10 m for 1.75 m. People walk with 0.06-0.14 m; 0.13 leg lengths
-#: is preferred on a treadmill (Donelan, Kram & Kuo 2001).
-STEP_WIDTH = 0.057
-#: Toe-out of each foot, radians: 5.9 +- 6.9 deg (normal adults, heel-ball line).
-TOE_OUT = float(np.radians(6.0))
 #: Seconds of standing after a stop.
 REST = 0.4
-#: Widest step over leg length, largest toe-out, most frames a second.
-WIDEST_STEP, LARGEST_TOE_OUT, FASTEST_FPS = 0.5, float(np.radians(30.0)), 10_000.0
-#: Narrowest step, over stature and in meters, and largest toe-in: beyond, feet touch in passing.
-NARROWEST_STEP, NARROWEST, LARGEST_TOE_IN = 0.05, 0.066, float(np.radians(5.0))
-#: Fewest frames a second at which contacts mean anything between frames.
-SLOWEST_FPS = 5.0
+#: Most frames a second, and fewest at which contacts mean anything between frames.
+FASTEST_FPS, SLOWEST_FPS = 10_000.0, 5.0
 
 
 def _picture(name: str) -> Callable[[Motion, Path], None]:
@@ -89,7 +80,7 @@ def walk(
     step_length: float | None = None,
     cadence: float | None = None,
     speed: float | None = None,
-    start: str = "stand",
+    start: str | Start | dict[str, Any] = "stand",
     stop: str = "stand",
     step_width: float | None = None,
     toe_out: float | tuple[float, float] | None = None,
@@ -98,6 +89,8 @@ def walk(
     variation: float = 0.0,
     fps: float = 60.0,
     seed: int = 0,
+    begin: float = 0.0,
+    until: float | None = None,
 ) -> Motion:
     """A person who walks a distance, along a path or on given footsteps, on level ground.
 
@@ -116,8 +109,8 @@ def walk(
         ``stop``, ``step_width`` and ``toe_out`` do not apply.
     do
         A script of actions, ``"walk to 0,3; turn left 90; step back 0.3"``, or a list of them
-        (:mod:`gaitsmith.plan.script`), from standing at 0,0 facing 0; ``start`` and ``stop`` do
-        not apply.
+        (:mod:`gaitsmith.plan.script`), from standing at 0,0 facing 0 or at ``start``; ``stop``
+        does not apply.
     body
         Height in meters, name of a built-in body, ``.toml`` file of measures, a clip (whose
         rig has the lengths), or a Body.
@@ -130,7 +123,8 @@ def walk(
         :func:`gaitsmith.plan.pace.choose_pace`.
     start, stop
         ``"stand"`` (feet side by side on the end of the path) or ``"walk"`` (mid-walk, from
-        heel strike to heel strike).
+        heel strike to heel strike). ``start`` may also be where a script or a distance begins,
+        a :class:`~gaitsmith.plan.start.Start`.
     step_width
         Meters between left and right footsteps, measured across; None: the gait's own, else
         0.057 of the height. From 0.05 of the height (at least 0.066 m) to half the leg.
@@ -150,6 +144,9 @@ def walk(
         slowly, step widths vary at once. See :mod:`gaitsmith.plan.rhythm`.
     seed
         Of the variation.
+    begin, until
+        Seconds that the person stands before it begins, and to which it stands on at least
+        once it has arrived; ``until`` is None: no longer than the stop needs.
 
     Returns
     -------
@@ -181,25 +178,33 @@ def walk(
         raise InvalidInputError(
             f"fps must be from {SLOWEST_FPS:g} to {FASTEST_FPS:g} frames per second, got {fps:g}"
         )
-    one_of("start", start, ("stand", "walk"))
+    start = start_of(start)
+    if isinstance(start, Start):
+        where = _from(start, where, distance)
+    else:
+        one_of("start", start, ("stand", "walk"))
     one_of("stop", stop, ("stand", "walk"))
+    if begin:
+        positive("begin", begin, "seconds")
+    if (begin and start == "walk") or (until is not None and stop == "walk"):
+        raise InvalidInputError("who stands before or after the walk needs start and stop 'stand'")
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InvalidInputError(f"seed must be a whole number, 0 or more, got {seed!r}")
     one_of("banking", banking, BANKINGS)
     manner = manner or Manner()
     style, named = gait_from(gait, manner)
-    stance = _stance(who, step_width, toe_out, style.habits)
+    stance = stance_of(who, step_width, toe_out, style.habits)
     if step_length is not None:
         check_step_length(who, positive("step_length", step_length, "meters"))
-    pace = choose_pace(
-        who,
-        step_length=step_length,
-        cadence=cadence,
-        speed=speed,
-        usual=None if style.habits is None else _own_pace(who, style.habits),
-    )
-    check_step_length(who, pace.step_length)
-    _warn_of_unusual(who, pace.step_length, pace.speed)
+    usual = None if style.habits is None else own_pace(who, style.habits)
+
+    def paced(tempo: Tempo) -> Pace:
+        pace = choose_pace(who, **vars(tempo), usual=usual)
+        check_step_length(who, pace.step_length)
+        _warn_of_unusual(who, pace.step_length, pace.speed)
+        return pace
+
+    pace = paced(Tempo(speed, step_length, cadence))
     recipe = {
         "gaitsmith": __version__,
         "walk": {
@@ -209,13 +214,14 @@ def walk(
             "step_length": step_length,
             "cadence": cadence,
             "speed": speed,
-            "start": start,
+            "start": start_to_dict(start) if isinstance(start, Start) else start,
             "stop": stop,
             "step_width": stance.width,
             "toe_out": stance.toe_out,
             "manner": asdict(manner),
             **({} if distance is not None else {"banking": banking}),
             **({"variation": variation} if variation else {}),
+            **({"begin": float(begin)} if begin else {}),
             "fps": fps,
             "seed": seed,
         },
@@ -230,18 +236,56 @@ def walk(
         seed=seed,
     )
     outside = banking == "body"
-    plan = _plan(where, who, pace, stance, rhythm, ground, start, stop, keep=keep, outside=outside)
+    if isinstance(where, Script):
+        manners = Manners(who, pace, stance, ground, rhythm, outside, keep, paced)
+        plan = direct(where.actions, manners, start if isinstance(start, Start) else None)
+    else:
+        begins = "stand" if isinstance(start, Start) else start
+        plan = _plan(
+            where, who, pace, stance, rhythm, ground, begins, stop, keep=keep, outside=outside
+        )
     if step_length is not None and isinstance(where, WalkPath) and isinstance(plan, StepPlan):
         _warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
     generator = CurvedGenerator(style.walk, ground, style.overlay, banking=banking)
     if isinstance(plan, Timeline):
         generator = MixedGenerator(generator, LocalGenerator(style.walk, ground, style.overlay))
     prepared = prepare_walk(plan, generator, who, ground, rest=REST)
-    return sample_walk(prepared, who, ground, fps=fps, recipe=recipe)
+    motion = sample_walk(prepared, who, ground, fps=fps, recipe=recipe, begin=float(begin))
+    return motion if until is None else stand_on(motion, until)
+
+
+def stand_on(motion: Motion, until: float) -> Motion:
+    """A generated ``motion`` that stands on to the second ``until``, and its recipe says so.
+
+    The same as :func:`walk` makes with this ``until``.
+    """
+    if motion.labels is None:
+        raise InvalidInputError("only a generated motion knows how to stand on")
+    until = positive("until", until, "seconds")
+    recipe = json.loads(motion.labels.recipe)
+    recipe["walk"]["until"] = until
+    labels = replace(motion.labels, recipe=json.dumps(recipe, sort_keys=True))
+    return held(motion.with_(labels=labels), until)
+
+
+def _from(
+    start: Start, where: WalkPath | GivenSteps | StepPlan | Script, distance: float | None
+) -> WalkPath | Script:
+    """Where to walk from ``start``."""
+    if isinstance(where, Script):
+        return where
+    if distance is None or start.feet is not None:
+        raise InvalidInputError(
+            "a path and footsteps begin where they say; a start is of do and distance"
+            if distance is None
+            else "a distance begins with the feet side by side; a start with feet is of do"
+        )
+    assert isinstance(where, WalkPath)
+    return WalkPath.line(where.length, origin=start.place, heading=start.heading)
 
 
 def _plan(
-    where: WalkPath | GivenSteps | StepPlan | Script,
+    where: WalkPath | GivenSteps | StepPlan,
     body: Body,
     pace: Pace,
     stance: Stance,
@@ -252,11 +296,8 @@ def _plan(
     *,
     keep: bool,
     outside: bool,
-) -> StepPlan | Timeline:
-    """Footsteps along a path, those that were given, or those of a script."""
-    if isinstance(where, Script):
-        manners = Manners(body, pace, stance, ground, rhythm, outside, keep)
-        return direct(where.actions, manners)
+) -> StepPlan:
+    """Footsteps along a path, or those that were given."""
     if isinstance(where, WalkPath):
         return follow(
             where,
@@ -273,67 +314,6 @@ def _plan(
     if isinstance(where, GivenSteps):
         return plan_given(where, body=body, pace=pace, ground=ground)
     return where
-
-
-def _own_pace(body: Body, habits: Habits) -> Pace:
-    """The pace of who was measured at the size of ``body``: equal Froude numbers."""
-    return Pace(
-        step_length=habits.step_length * body.leg_length,
-        cadence=habits.cadence * float(np.sqrt(habits.leg_length / body.leg_length)),
-    )
-
-
-def _stance(
-    body: Body,
-    step_width: float | None,
-    toe_out: float | tuple[float, float] | None,
-    habits: Habits | None,
-) -> Stance:
-    narrow = max(NARROWEST_STEP * body.height, NARROWEST)
-    wide = WIDEST_STEP * body.leg_length
-    if step_width is not None:
-        width = positive("step_width", step_width, "meters")
-        if not narrow <= width <= wide:
-            raise InvalidInputError(
-                f"step_width must be from {narrow:.3f} to {wide:.3f} m for this body, "
-                f"got {width!r} m"
-            )
-    elif habits is None:
-        width = max(STEP_WIDTH * body.height, narrow)
-    else:
-        width = _kept("step width", habits.step_width * body.leg_length, narrow, wide, "m")
-    least, most = -LARGEST_TOE_IN, LARGEST_TOE_OUT
-    if toe_out is None and habits is not None:
-        left, right = (
-            np.radians(_kept("toe-out", float(d), np.degrees(least), np.degrees(most), "deg"))
-            for d in np.degrees(habits.toe_out)
-        )
-        return Stance(width, (float(left), float(right)))
-    both = TOE_OUT if toe_out is None else toe_out
-    pair = both if isinstance(both, tuple | list) else (both, both)
-    if len(pair) != 2:
-        raise InvalidInputError(f"toe_out must be one angle or [left, right], got {both!r}")
-    left, right = (number("toe_out", angle, "radians") for angle in pair)
-    for angle in (left, right):
-        if not least <= angle <= most:
-            raise InvalidInputError(
-                f"toe_out must be from {np.degrees(least):g} to {np.degrees(most):g} deg, got "
-                f"{np.degrees(angle):.1f} deg"
-            )
-    return Stance(width, (left, right))
-
-
-def _kept(what: str, value: float, least: float, most: float, unit: str) -> float:
-    """``value`` of a gait within the limits that keep feet apart; says so where it was not."""
-    kept = min(max(value, least), most)
-    if abs(kept - value) > 0.02 * (most - least):
-        warnings.warn(
-            f"the gait's own {what} of {value:.3g} {unit} is not walked: {kept:.3g} {unit} keeps "
-            "the feet apart",
-            GaitsmithWarning,
-            stacklevel=4,
-        )
-    return kept
 
 
 def _warn_of_unusual(body: Body, step_length: float, speed: float) -> None:

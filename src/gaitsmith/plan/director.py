@@ -11,6 +11,8 @@ from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, ahead, leftward
 from gaitsmith.errors import InfeasibleError
 from gaitsmith.plan.follow import follow
 from gaitsmith.plan.footsteps import Footstep, LocalStep, PlannedStep
+from gaitsmith.plan.legs import Legs, legs_of
+from gaitsmith.plan.pace import choose_pace
 from gaitsmith.plan.script import (
     Action,
     BeAt,
@@ -23,12 +25,13 @@ from gaitsmith.plan.script import (
     Turn,
     WalkTo,
 )
+from gaitsmith.plan.start import Start
 from gaitsmith.plan.stepping import FARTHEST, LARGEST_TURN, classify, turnaround, turning_side
 from gaitsmith.plan.timeline import Timeline
-from gaitsmith.plan.ways import NO_WAY, goals_of, on_floor, path_through, wrapped
+from gaitsmith.plan.ways import NO_WAY, from_feet, goals_of, leads, on_floor, path_through, wrapped
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from jaxtyping import Float
 
@@ -37,7 +40,11 @@ if TYPE_CHECKING:
     from gaitsmith.ground import Ground
     from gaitsmith.plan.lengths import Stance
     from gaitsmith.plan.pace import Pace
+    from gaitsmith.plan.paths import Path
     from gaitsmith.plan.rhythm import Rhythm
+    from gaitsmith.plan.script import Tempo
+
+    Way = list[Float[np.ndarray, "2"]]
 
 #: Seconds of the first and of the closing step of a pair that moves the body by half a meter, of
 #: an adult whose leg is LEG meters; others keep the Froude number.
@@ -80,17 +87,28 @@ class Manners:
     rhythm: Rhythm | None = None
     outside: bool = True
     keep_cadence: bool = False
+    paced: Callable[[Tempo], Pace] | None = None
+
+    def pace_at(self, tempo: Tempo | None) -> Pace:
+        """The pace of an action."""
+        if tempo is None:
+            return self.pace
+        return choose_pace(self.body, **vars(tempo)) if self.paced is None else self.paced(tempo)
+
+    def keeps(self, tempo: Tempo | None) -> bool:
+        """Whether an action slows down in curves by shorter steps alone."""
+        return self.keep_cadence if tempo is None else tempo.cadence is not None
 
 
-def direct(actions: Sequence[Action], manners: Manners) -> Timeline:
-    """Steps of ``actions``, from standing at 0,0 facing 0.
+def direct(actions: Sequence[Action], manners: Manners, start: Start | None = None) -> Timeline:
+    """Steps of ``actions`` from ``start``; None: from standing at 0,0 facing 0.
 
     Raises
     ------
     InfeasibleError
         Naming the action that cannot be done, and why.
     """
-    director = _Director(manners)
+    director = _Director(manners, start or Start())
     i = 0
     while i < len(actions):
         group = [actions[i]]
@@ -114,6 +132,7 @@ class _Director:
     """Where the person stands, and what is planned so far."""
 
     manners: Manners
+    start: Start
     feet: dict[int, Footstep] = field(default_factory=dict)
     planned: list[PlannedStep] = field(default_factory=list)
     facing: float = 0.0
@@ -124,9 +143,11 @@ class _Director:
     paths: list[Float[np.ndarray, "P 2"]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        half = 0.5 * self.manners.stance.width
-        for side in (LEFT, RIGHT):
-            self.feet[side] = self._foot(side, half * SIDE_SIGN[side] * leftward(0.0), 0.0)
+        self.facing = self.gaze = self.start.heading
+        held = self.start.footholds(self.manners.body, self.manners.stance)
+        for side, (place, heading) in enumerate(held):
+            foot = self._foot(side, on_floor(place), self.facing)
+            self.feet[side] = replace(foot, heading=heading)
 
     # ---------------------------------------------------------------------- actions
 
@@ -176,11 +197,10 @@ class _Director:
         ways = [
             [np.array(p) for p in (a.points if isinstance(a, Follow) else [a.point])] for a in group
         ]
-        smooth = [isinstance(a, Follow) for a in group]
-        run: list[tuple[list[Float[np.ndarray, "2"]], bool]] = []
+        run: list[tuple[Way, bool, Tempo | None]] = []
         here = self.middle
         heading: float | None = None
-        for way, soft in zip(ways, smooth, strict=True):
+        for way, action in zip(ways, group, strict=True):
             gap = way[0] - here
             if np.linalg.norm(gap) < NO_WAY and len(way) == 1:
                 continue
@@ -188,55 +208,40 @@ class _Director:
             if heading is not None and abs(wrapped(towards - heading)) > LARGEST_CORNER:
                 self._walk(run)
                 run = []
-            run.append((way, soft))
+            run.append((way, isinstance(action, Follow), action.tempo))
             points = [here, *way]
             heading = float(np.arctan2(*(points[-1] - points[-2])))
             here = way[-1]
         if run:
             self._walk(run)
 
-    def _walk(self, run: Sequence[tuple[list[Float[np.ndarray, "2"]], bool]]) -> None:
-        path = path_through(self.middle, run)
+    def _walk(self, run: Sequence[tuple[Way, bool, Tempo | None]]) -> None:
+        ways = [(way, soft) for way, soft, _ in run]
+        path = path_through(self.middle, ways)
         aside = wrapped(float(path.heading[0]) - self.facing)
         if abs(aside) > TURN_FIRST:
             self._turn(aside, walks_on=True)
-            path = path_through(self.middle, run)
+            path = path_through(self.middle, ways)
         if self.planned and self.planned[-1].kind not in ("stop", "stand"):
             self._stand(BEFORE_WALK)
         manners = self.manners
-        begin, way = path.points[0], ahead(float(path.heading[0]))
-        lead = {s: float((f.position - on_floor(begin)) @ way) for s, f in self.feet.items()}
+        lead = leads(self.feet, path)
         first = RIGHT if lead[RIGHT] <= lead[LEFT] + 0.01 else LEFT
+        tempi = [tempo for *_, tempo in run]
+        pace, legs = self._legs(path, [way[-1] for way, _ in ways], tempi)
         plan = follow(
             path,
-            pace=manners.pace,
+            pace=pace,
             stance=manners.stance,
             ground=manners.ground,
             body=manners.body if manners.outside else None,
-            keep_cadence=manners.keep_cadence,
+            keep_cadence=all(manners.keeps(tempo) for tempo in tempi),
+            legs=legs,
             rhythm=manners.rhythm,
             stature=manners.body.height,
             first=first,
         )
-        # the feet stand where they stand
-        whole = 2.0 * np.pi * np.round((self.facing - plan.direction[0]) / (2.0 * np.pi))
-        position, heading = np.array(plan.position), plan.heading + whole
-        assert plan.middle is not None
-        assert plan.gaze is not None
-        middle, gaze = np.array(plan.middle), np.array(plan.gaze)
-        for i in (0, 1):
-            foot = self.feet[int(plan.side[i])]
-            position[i], heading[i] = foot.position, foot.heading
-            middle[i] = begin + lead[foot.side] * way[[0, 2]]
-        gaze[:2] = 0.0
-        plan = replace(
-            plan,
-            position=position,
-            heading=heading,
-            direction=plan.direction + whole,
-            middle=middle,
-            gaze=gaze,
-        )
+        plan = from_feet(plan, self.feet, path, self.facing)
         for step in plan.steps():
             self._add(step)
         assert plan.path is not None
@@ -244,6 +249,15 @@ class _Director:
         self.facing = self.gaze = float(plan.direction[-1])
         for foot in plan.footsteps()[-2:]:
             self.feet[foot.side] = foot
+
+    def _legs(
+        self, path: Path, ends: Way, tempi: Sequence[Tempo | None]
+    ) -> tuple[Pace, Legs | None]:
+        """The pace of the longest steps, and where others are taken."""
+        paces = [self.manners.pace_at(tempo) for tempo in tempi]
+        if all(pace == paces[0] for pace in paces):
+            return paces[0], None
+        return legs_of(path, ends, paces)
 
     # ------------------------------------------------------------------ local steps
 
@@ -344,7 +358,7 @@ class _Director:
         place = 0.5 * (goals[LEFT][0] + goals[RIGHT][0])
         facing = 0.5 * (goals[LEFT][1] + goals[RIGHT][1])
         if float(np.linalg.norm(place - self.middle)) > STEP_ONLY:
-            self._walk([([place], False)])
+            self._walk([([place], False, action.tempo)])
         self._turn(wrapped(facing - self.facing), walks_on=False)
         self._settle()
         whole = 2.0 * np.pi * np.round((self.facing - facing) / (2.0 * np.pi))

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from gaitsmith.body.body import Body
     from gaitsmith.conventions import StepKind
     from gaitsmith.ground import Ground
+    from gaitsmith.plan.legs import Legs
     from gaitsmith.plan.pace import Pace
     from gaitsmith.plan.paths import Path
 
@@ -85,6 +86,7 @@ def follow(
     rhythm: Rhythm | None = None,
     stature: float = 1.75,
     first: int = RIGHT,
+    legs: Legs | None = None,
 ) -> StepPlan:
     """Footsteps along ``path``.
 
@@ -113,6 +115,8 @@ def follow(
         Of who walks, meters: for how much step widths vary.
     first
         Side of the foot that lands first.
+    legs
+        Where on the way steps are shorter, quicker or slower than the pace's own; None: nowhere.
 
     Raises
     ------
@@ -127,7 +131,7 @@ def follow(
             f"{pace.step_length:.3f} m; walk it in parts"
         )
     power = 1.0 if keep_cadence else LENGTH_SHARE
-    stretch = _stretch(path, pace.step_length, power)
+    stretch = _stretch(path, pace.step_length, power, legs)
     rhythm = rhythm or Rhythm()
     lengths, real = _landings(path, stretch, pace.step_length, start, stop, rhythm)
     kinds: list[StepKind] = ["walk"] * len(lengths)
@@ -141,8 +145,10 @@ def follow(
         along[-1] = path.length
         along = np.concatenate([along, along[-1:]])
     eased = np.array([EASED_DURATION if kind != "walk" else 1.0 for kind in kinds])
+    middle = 0.5 * (along[2:] + along[1:-1])
+    if legs is not None:
+        eased = eased * legs.duration_at(middle)
     if power < 1.0 and len(stretch.along) > 2:
-        middle = 0.5 * (along[2:] + along[1:-1])
         eased = eased * np.interp(middle, stretch.along, stretch.slowing) ** (power - 1.0)
     # the first to land is the right one; so mid-walk it is the rear one
     side = np.arange(len(along)) % 2
@@ -229,12 +235,15 @@ def curve_share(path: Path, pace: Pace, *, keep_cadence: bool = False) -> float:
     return float(np.min(np.diff(stretch.along) / rise))
 
 
-def _stretch(path: Path, length: float, power: float) -> _Stretch:
+def _stretch(path: Path, length: float, power: float, legs: Legs | None = None) -> _Stretch:
     """How much each part of the path is stretched: the usual step over the one it allows."""
     ends = np.array([0.0, path.length])
-    if path.straight:
+    if path.straight and legs is None:
         return _Stretch(ends, ends, np.ones(2))
     s = np.linspace(0.0, path.length, int(np.ceil(path.length / CELL)) + 1)
+    own = np.ones(len(s)) if legs is None else legs.length_at(s)
+    if path.straight:
+        return _of_share(s, own, np.ones(len(s)))
     # how much the path turns, either way, over a step's length around each cell
     bends = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(path.heading_at(s))))])
     reach = 0.5 * length
@@ -243,8 +252,8 @@ def _stretch(path: Path, length: float, power: float) -> _Stretch:
     low, high = np.maximum(s - reach, 0.0), np.minimum(s + reach, path.length)
     turn = (np.interp(high, s, smooth) - np.interp(low, s, smooth)) / (high - low)
     slowing = np.minimum(1.0, (length / (np.maximum(turn, 1e-9) * FREE_RADIUS)) ** (1.0 / 3.0))
-    share = np.minimum(slowing**power, USUAL_TURN / np.maximum(turn, 1e-9))
-    return _of_share(s, np.maximum(share, SHORTEST), slowing)
+    share = np.minimum(own * slowing**power, USUAL_TURN / np.maximum(turn, 1e-9))
+    return _of_share(s, np.maximum(share, SHORTEST * own), slowing)
 
 
 def _of_share(s: np.ndarray, share: np.ndarray, slowing: np.ndarray) -> _Stretch:

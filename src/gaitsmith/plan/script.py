@@ -16,17 +16,40 @@ Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
+class Tempo:
+    """How fast one action walks: as :func:`~gaitsmith.plan.pace.choose_pace` is told.
+
+    Attributes
+    ----------
+    speed, step_length, cadence
+        Meters per second, meters, steps per minute; None: not said. An action that says one of
+        them is paced by what it says alone.
+    """
+
+    speed: float | None = None
+    step_length: float | None = None
+    cadence: float | None = None
+
+    @property
+    def said(self) -> dict[str, float]:
+        """What is not None."""
+        return {n: v for n in TEMPI if (v := getattr(self, n)) is not None}
+
+
+@dataclass(frozen=True)
 class WalkTo:
-    """Walk to a point x,z."""
+    """Walk to a point x,z; at ``tempo``, else as the person walks."""
 
     point: Point
+    tempo: Tempo | None = None
 
 
 @dataclass(frozen=True)
 class Follow:
-    """Walk a smooth curve through points."""
+    """Walk a smooth curve through points; at ``tempo``, else as the person walks."""
 
     points: tuple[Point, ...]
+    tempo: Tempo | None = None
 
 
 @dataclass(frozen=True)
@@ -77,12 +100,14 @@ class Lean:
 class BeAt:
     """Stand with the middle of both N at ``point``, facing ``heading``; the feet as given.
 
-    ``feet`` are (x, z, heading in radians) of left and right; None: side by side.
+    ``feet`` are (x, z, heading in radians) of left and right; None: side by side. Where it
+    takes a walk to get there, ``tempo`` is that walk's.
     """
 
     point: Point
     heading: float | None = None
     feet: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+    tempo: Tempo | None = None
 
 
 Action = WalkTo | Follow | Step | Turn | Face | LookAt | Stand | Lean | BeAt
@@ -102,20 +127,28 @@ class Script:
 
 #: Ways that a step or a lean may go.
 WAYS = ("forward", "back", "left", "right")
+#: What a walking action may say of its tempo: field, and unit.
+TEMPI = {"speed": "m/s", "step_length": "m", "cadence": "steps/min"}
+#: The same as written in a script, and the field's name.
+_TEMPO_WORDS = {name.replace("_", "-"): name for name in TEMPI}
+_TEMPO_FORM = "[speed M/S] [step-length M] [cadence STEPS/MIN]"
 #: What an action looks like, by its first word.
 FORMS = {
-    "walk": "walk to X,Z",
-    "follow": "follow X,Z X,Z ...",
+    "walk": f"walk to X,Z {_TEMPO_FORM}",
+    "follow": f"follow X,Z X,Z ... {_TEMPO_FORM}",
     "step": "step forward|back|left|right METERS",
     "turn": "turn left|right DEGREES",
     "face": "face DEGREES",
     "look": "look at X,Y,Z, or look ahead",
     "stand": "stand SECONDS",
     "lean": "lean forward|back|left|right DEGREES",
-    "be": "be at X,Z [facing DEGREES] [feet side by side | feet L X,Z,DEG R X,Z,DEG]",
+    "be": "be at X,Z [facing DEGREES] [feet side by side | feet L X,Z,DEG R X,Z,DEG] "
+    + _TEMPO_FORM,
 }
 #: Longest way (m), time (s), number of actions.
 FARTHEST, LONGEST, MOST_ACTIONS = 1000.0, 3600.0, 1000
+#: Largest speed, step length and cadence that anybody may write; a body walks less.
+FASTEST = {"speed": 10.0, "step_length": 5.0, "cadence": 600.0}
 #: Largest turn and lean, degrees.
 LARGEST_TURN, LARGEST_LEAN = 3600.0, 45.0
 
@@ -166,11 +199,15 @@ def written(action: Action) -> str:
                 return text
         return repr(near)
 
+    def at(tempo: Tempo | None) -> str:
+        said = {} if tempo is None else tempo.said
+        return "".join(f" {n.replace('_', '-')} {float(v)!r}" for n, v in said.items())
+
     match action:
-        case WalkTo(point):
-            return f"walk to {joined(*point)}"
-        case Follow(points):
-            return "follow " + " ".join(joined(*p) for p in points)
+        case WalkTo(point, tempo):
+            return f"walk to {joined(*point)}{at(tempo)}"
+        case Follow(points, tempo):
+            return "follow " + " ".join(joined(*p) for p in points) + at(tempo)
         case Step(way, distance):
             return f"step {way} {float(distance)!r}"
         case Turn(angle):
@@ -183,14 +220,14 @@ def written(action: Action) -> str:
             return f"stand {float(seconds)!r}"
         case Lean(way, angle):
             return f"lean {way} {degrees(angle)}"
-        case BeAt(point, heading, feet):
+        case BeAt(point, heading, feet, tempo):
             text = f"be at {joined(*point)}"
             if heading is not None:
                 text += f" facing {degrees(heading)}"
             if feet is not None:
                 (lx, lz, la), (rx, rz, ra) = feet
                 text += f" feet L {joined(lx, lz)},{degrees(la)} R {joined(rx, rz)},{degrees(ra)}"
-            return text
+            return text + at(tempo)
 
 
 class _Words:
@@ -209,6 +246,11 @@ class _Words:
     @property
     def left(self) -> bool:
         return self.at < len(self.words)
+
+    @property
+    def next_is_point(self) -> bool:
+        """Whether the next word is meant for a point."""
+        return "," in self.words[self.at] or not self.words[self.at][0].isalpha()
 
     def take(self, what: str) -> str:
         if not self.left:
@@ -263,16 +305,31 @@ def _parsed(text: str, number: int) -> Action:
     return action
 
 
+def _tempo(words: _Words) -> Tempo | None:
+    """What follows of speed, step length and cadence, in any order."""
+    said: dict[str, float] = {}
+    while words.left and not words.next_is_point:
+        _take_tempo(words, words.word("word", *_TEMPO_WORDS), said)
+    return Tempo(**said) if said else None
+
+
+def _take_tempo(words: _Words, word: str, said: dict[str, float]) -> None:
+    name = _TEMPO_WORDS[word]
+    if name in said:
+        raise words.wrong(f"{word} is said twice")
+    said[name] = words.size(f"the {word}", TEMPI[name], FASTEST[name])
+
+
 def _walk(words: _Words) -> Action:
     words.word("word", "to")
-    return WalkTo(words.point())
+    return WalkTo(words.point(), _tempo(words))
 
 
 def _follow(words: _Words) -> Action:
     points = [words.point()]
-    while words.left:
+    while words.left and words.next_is_point:
         points.append(words.point())
-    return Follow(tuple(points))
+    return Follow(tuple(points), _tempo(words))
 
 
 def _step(words: _Words) -> Action:
@@ -309,23 +366,26 @@ def _lean(words: _Words) -> Action:
 def _be(words: _Words) -> Action:
     words.word("word", "at")
     point, heading, feet = words.point(), None, None
+    said: dict[str, float] = {}
     while words.left:
-        if words.word("word", "facing", "feet") == "facing":
+        word = words.word("word", "facing", "feet", *_TEMPO_WORDS)
+        if word == "facing":
             (degrees,) = words.numbers("the heading", 1)
             heading = math.radians(degrees)
-            continue
-        if words.word("word", "side", "l") == "side":
+        elif word in _TEMPO_WORDS:
+            _take_tempo(words, word, said)
+        elif words.word("word", "side", "l") == "side":
             words.word("word", "by")
             words.word("word", "side")
-            continue
-        left = words.numbers("the left foot", 3)
-        words.word("word", "r")
-        right = words.numbers("the right foot", 3)
-        feet = (
-            (left[0], left[1], math.radians(left[2])),
-            (right[0], right[1], math.radians(right[2])),
-        )
-    return BeAt(point, heading, feet)
+        else:
+            left = words.numbers("the left foot", 3)
+            words.word("word", "r")
+            right = words.numbers("the right foot", 3)
+            feet = (
+                (left[0], left[1], math.radians(left[2])),
+                (right[0], right[1], math.radians(right[2])),
+            )
+    return BeAt(point, heading, feet, Tempo(**said) if said else None)
 
 
 _READERS = {

@@ -117,10 +117,19 @@ class Timeline:
         self, times: Float[np.ndarray, "F"]
     ) -> tuple[Int[np.ndarray, "F"], Float[np.ndarray, "F"]]:
         """Index of the footstep that lands next, and the share of the time to it that passed."""
-        landing = self.time
-        last = len(landing) - 1
-        if last == 1:
-            return np.ones(len(times), dtype=np.int64), np.ones(len(times))
-        step = np.clip(np.searchsorted(landing, times + 1e-9, side="right"), 2, last)
-        share = (times - landing[step - 1]) / (landing[step] - landing[step - 1])
-        return step, np.clip(share, 0.0, 1.0)
+        return landing_at(self.time, times)
+
+
+def landing_at(
+    landing: Float[np.ndarray, "N"], times: Float[np.ndarray, "F"]
+) -> tuple[Int[np.ndarray, "F"], Float[np.ndarray, "F"]]:
+    """Index of the footstep that lands next, and the share of the time to it that passed.
+
+    ``landing`` are the seconds of all footsteps, two of 0 first.
+    """
+    last = len(landing) - 1
+    if last == 1:
+        return np.ones(len(times), dtype=np.int64), np.ones(len(times))
+    step = np.clip(np.searchsorted(landing, times + 1e-9, side="right"), 2, last)
+    share = (times - landing[step - 1]) / (landing[step] - landing[step - 1])
+    return step, np.clip(share, 0.0, 1.0)

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, leftward
+from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, ahead, leftward
 from gaitsmith.errors import InfeasibleError
 from gaitsmith.plan.paths import Path
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from jaxtyping import Float
 
+    from gaitsmith.plan.footsteps import Footstep, StepPlan
     from gaitsmith.plan.lengths import Stance
     from gaitsmith.plan.script import BeAt
 
@@ -68,6 +70,35 @@ def path_through(
     if len(kept) < 2:
         raise InfeasibleError("there is no way to walk: it begins where it ends")
     return Path.through(np.array(kept))
+
+
+def leads(feet: Mapping[int, Footstep], path: Path) -> dict[int, float]:
+    """How far each foot stands ahead of the beginning of ``path``, meters."""
+    way = ahead(float(path.heading[0]))
+    return {s: float((f.position - on_floor(path.points[0])) @ way) for s, f in feet.items()}
+
+
+def from_feet(plan: StepPlan, feet: Mapping[int, Footstep], path: Path, facing: float) -> StepPlan:
+    """``plan`` along ``path`` beginning with the feet where they stand, the body ``facing`` on."""
+    way, lead = ahead(float(path.heading[0]))[[0, 2]], leads(feet, path)
+    whole = 2.0 * np.pi * np.round((facing - plan.direction[0]) / (2.0 * np.pi))
+    position, heading = np.array(plan.position), plan.heading + whole
+    assert plan.middle is not None
+    assert plan.gaze is not None
+    middle, gaze = np.array(plan.middle), np.array(plan.gaze)
+    for i in (0, 1):
+        foot = feet[int(plan.side[i])]
+        position[i], heading[i] = foot.position, foot.heading
+        middle[i] = path.points[0] + lead[foot.side] * way
+    gaze[:2] = 0.0
+    return replace(
+        plan,
+        position=position,
+        heading=heading,
+        direction=plan.direction + whole,
+        middle=middle,
+        gaze=gaze,
+    )
 
 
 def on_floor(place: Float[np.ndarray, "2"]) -> Float[np.ndarray, "3"]:

@@ -11,10 +11,10 @@ from gaitsmith._checks import positive
 from gaitsmith.body.rig import skeleton_of
 from gaitsmith.contact.apply import local_legs
 from gaitsmith.conventions import SIDES
-from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import exp
+from gaitsmith.motion.holding import frames_until
 from gaitsmith.motion.motion import Labels, Motion
-from gaitsmith.plan.timeline import Timeline
+from gaitsmith.plan.timeline import Timeline, landing_at
 from gaitsmith.synthesis.overlay import upper_joints
 
 if TYPE_CHECKING:
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from gaitsmith.synthesis.step import PreparedWalk
 
 
-#: Frames that one motion may have: about 2 GB.
-MOST_FRAMES = 1_000_000
 #: Frames that are posed together: their numbers stay in the processor's cache. No power of two,
 #: whose rows would compete for the same places in it.
 BLOCK = 2000
@@ -39,20 +37,22 @@ NEAR = 0.7072
 
 
 def sample_walk(
-    walk: PreparedWalk, body: Body, ground: Ground, *, fps: float, recipe: dict[str, Any]
+    walk: PreparedWalk,
+    body: Body,
+    ground: Ground,
+    *,
+    fps: float,
+    recipe: dict[str, Any],
+    begin: float = 0.0,
 ) -> Motion:
     """Sample ``walk`` at ``fps`` frames per second from its first instant.
 
     The last frame is the last one that is not after the end of the walk. Everything is
-    evaluated for all frames at once.
+    evaluated for all frames at once. The walk begins at the second ``begin``; until then it
+    stands as it does in its first instant.
     """
     fps = positive("fps", fps, "frames per second")
-    if walk.duration * fps > MOST_FRAMES:
-        raise InvalidInputError(
-            f"{walk.duration:.0f} s at {fps:g} frames per second are more than {MOST_FRAMES} "
-            "frames; walk it in parts or lower fps"
-        )
-    frames = int(np.floor(walk.duration * fps + 1e-6)) + 1
+    frames = frames_until(begin + walk.duration, fps)
     times = np.arange(frames) / fps
     skeleton = skeleton_of(body)
     root = np.empty((frames, 3))
@@ -61,7 +61,7 @@ def sample_walk(
     before = None
     for start in range(0, frames, BLOCK):
         rows = slice(start, min(start + BLOCK, frames))
-        poses = walk.poses(np.minimum(times[rows], walk.duration))
+        poses = walk.poses(np.clip(times[rows] - begin, 0.0, walk.duration))
         root[rows], contacts[rows] = poses.center, poses.contacts
         local = _local_rotations(poses, body, skeleton)
         before = _keep_signs(local, before)
@@ -74,7 +74,7 @@ def sample_walk(
         rotations=rotations,
         fps=fps,
         contacts=contacts,
-        labels=_labels(walk, ground, times, recipe),
+        labels=_labels(walk, ground, times, recipe, begin),
     )
 
 
@@ -121,11 +121,13 @@ def _keep_signs(
 
 
 def _labels(
-    walk: PreparedWalk, ground: Ground, times: np.ndarray, recipe: dict[str, Any]
+    walk: PreparedWalk, ground: Ground, times: np.ndarray, recipe: dict[str, Any], begin: float
 ) -> Labels:
-    plan = walk.plan
-    if isinstance(plan, Timeline):
-        step, phase = plan.position_at(times)
+    plan, landing = walk.plan, walk.plan.time
+    if begin > 0.0:  # both initial feet stand from the first frame on
+        landing = np.concatenate([landing[:2], landing[2:] + begin])
+    if isinstance(plan, Timeline) or begin > 0.0:
+        step, phase = landing_at(landing, times)
     else:
         step, phase = walk.clock.position(times)
         landed = times >= walk.clock.starts[-1] - 1e-9
@@ -137,7 +139,7 @@ def _labels(
         footstep_side=plan.side,
         footstep_position=plan.position,
         footstep_heading=plan.heading,
-        footstep_time=plan.time,
+        footstep_time=landing,
         ground=json.dumps(ground.as_json(), sort_keys=True),
         recipe=json.dumps(recipe, sort_keys=True),
         path=plan.path,
