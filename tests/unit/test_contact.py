@@ -173,13 +173,24 @@ def test_a_raised_heel_reaches(who, back, up):
 
 
 def test_an_ankle_is_drawn_near_along_the_leg():
-    hip = np.zeros((3, 3))
-    ankle = np.array([[0.0, -0.9 * LEG, 0.0], [0.0, -1.2 * LEG, 0.0], [0.0, -1.2 * LEG, 0.0]])
-    near = drawn_near(hip, ankle, np.array([1.0, 1.0, 0.0]), BODY)
+    hip = np.zeros((2, 3))
+    ankle = np.array([[0.0, -0.9 * LEG, 0.0], [0.0, -1.2 * LEG, 0.0]])
+    near = drawn_near(hip, ankle, np.full(2, 0.5), np.full((2, 2), 0.9 * LEG), BODY)
     np.testing.assert_allclose(near[0], ankle[0], atol=1e-6)  # out of the soft limit's way
     assert np.linalg.norm(near[1]) == pytest.approx(SWING_REACH * LEG, abs=1e-9)
-    np.testing.assert_array_equal(near[2], ankle[2])
     assert np.abs(near[:, [0, 2]]).max() == 0.0
+
+
+@given(off=st.floats(0.9, REAR_REACH), strike=st.floats(0.9, REACH), far=st.floats(0.98, 1.05))
+def test_a_swinging_leg_is_in_reach_from_toe_off_to_heel_strike(off, strike, far):
+    """Ends are kept; between them no leg is straight, however far its foot is proposed."""
+    u = np.linspace(0.0, 1.0, 401)
+    away = LEG * (off + (strike - off) * u + (far - off) * np.clip(40.0 * u * (1.0 - u), 0.0, 1.0))
+    ankle = np.stack([np.zeros_like(u), -away, np.zeros_like(u)], axis=-1)
+    ends = np.repeat([[off * LEG], [strike * LEG]], len(u), axis=1)
+    near = np.linalg.norm(drawn_near(np.zeros_like(ankle), ankle, u, ends, BODY), axis=-1) / LEG
+    assert near[[0, -1]] == pytest.approx(away[[0, -1]] / LEG, abs=1e-12)
+    assert near.max() < 0.99965
 
 
 # the whole -------------------------------------------------------------------------------

@@ -16,9 +16,9 @@ from gaitsmith.contact.reach import (
     lowering,
     raised_heel,
 )
-from gaitsmith.contact.reference import Proposal, ReferenceStep, stack
+from gaitsmith.contact.reference import FINEST, Proposal, ReferenceStep, stack
 from gaitsmith.conventions import SIDE_SIGN
-from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.geometry.curves import hermite, parabola_slopes, smoothstep
 from gaitsmith.geometry.rotations import about, exp, multiply, rotate
 
 if TYPE_CHECKING:
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 CLEARANCE, CLEARANCE_RAMP = 0.010, 0.2
 #: So much of it at once, so that no curve dips below the ground between nodes.
 AT_ONCE, AT_ONCE_RAMP = 0.0004, 0.05
+#: Deepest that the sole's lowest point may be drawn between nodes, meters, before they are lifted.
+DIPS = 0.0001
 #: Part of the swing over which its first speed is matched to the leaving foot's.
 LEAVING = 0.2
 
@@ -74,9 +76,11 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
     down_by = lowering(walk.at, hip, ankle, slack, leg_length=body.leg_length)
     walk.curves["center"][:, 1] -= down_by
     hip[..., 1] -= down_by[:, None]
-    _raise_rear_heels(walk, body, stands, rear, hip)
+    extra = _rear_raise(walk, body, stands, rear, hip)
+    if _lower_the_rest(walk, body, stands, rear, extra, hip):
+        extra = _rear_raise(walk, body, stands, rear, hip)  # of hips that are lower: less
+    _raise_rear_heels(walk, rear, extra)
     _lock(walk, body, stands, rear)
-    _lower_the_rest(walk, body, down, rear, hip)
     check_reach(walk.at, hip, walk.curves["ankle"], down, leg_length=body.leg_length)
     for side in (0, 1):
         _swing(walk, body, ground, stands, targets, side, hip[:, side])
@@ -86,22 +90,30 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
 def _lower_the_rest(
     walk: Proposal,
     body: Body,
-    down: Bool[np.ndarray, "M 2"],
+    stands: Footholds,
     rear: Bool[np.ndarray, "M 2"],
+    extra: Float[np.ndarray, "k"],
     hip: Float[np.ndarray, "M 2 3"],
-) -> None:
+) -> bool:
     """Lower the hips once more where raising the heel could not bring the rear ankle near.
 
-    That is a foot too short for the step; the others are in reach already.
+    That is a foot too short for the step; the others are in reach already. Says whether it did.
     """
-    ankle = walk.curves["ankle"]
+    if not extra.any():
+        return False
+    node, side = np.nonzero(rear)
+    ankle = np.array(walk.curves["ankle"])
+    ankle[node, side] = stands.at((walk.step[node], side)).ankle(
+        body.foot, walk.curves["pitch"][node, side] - extra, walk.curves["meta"][node, side]
+    )
     short = rear & (np.linalg.norm(hip - ankle, axis=-1) > (REAR_REACH + 1e-6) * body.leg_length)
     if not short.any():
-        return
+        return False
     slack = np.where(short, 0.0, np.inf)
     down_by = lowering(walk.at, hip, ankle, slack, leg_length=body.leg_length)
     walk.curves["center"][:, 1] -= down_by
     hip[..., 1] -= down_by[:, None]
+    return True
 
 
 def _hips(walk: Proposal, body: Body) -> Float[np.ndarray, "M 2 3"]:
@@ -132,26 +144,33 @@ def _rear(walk: Proposal, down: Bool[np.ndarray, "M 2"]) -> Bool[np.ndarray, "M 
     return rear
 
 
-def _raise_rear_heels(
+def _rear_raise(
     walk: Proposal,
     body: Body,
     stands: Footholds,
     rear: Bool[np.ndarray, "M 2"],
     hip: Float[np.ndarray, "M 2 3"],
-) -> None:
-    """Raise rear heels where the leg does not reach, and let the raise die in the swing."""
+) -> Float[np.ndarray, "k"]:
+    """How much farther each of the ``rear`` feet must raise its heel, radians."""
     node, side = np.nonzero(rear)
-    curves = walk.curves
-    extra = raised_heel(
+    return raised_heel(
         body.foot,
         stands.at((walk.step[node], side)),
         hip[node, side],
-        curves["pitch"][node, side],
-        curves["meta"][node, side],
+        walk.curves["pitch"][node, side],
+        walk.curves["meta"][node, side],
         leg_length=body.leg_length,
     )
+
+
+def _raise_rear_heels(
+    walk: Proposal, rear: Bool[np.ndarray, "M 2"], extra: Float[np.ndarray, "k"]
+) -> None:
+    """Raise rear heels by ``extra``, and let the raise die in the swing."""
     if not extra.any():
         return
+    node, side = np.nonzero(rear)
+    curves = walk.curves
     curves["pitch"][node, side] -= extra
     curves["bend"][node, side] += extra
     leaving = np.zeros(len(walk.stance))
@@ -198,7 +217,8 @@ def _swing(
     # both ends where the footholds have them: what the proposal misses is spread over the swing
     steps = step[first]
     start = stands.at((steps, side))
-    land_pitch = walk.curves["pitch"][np.searchsorted(walk.at, steps + 1.0), side]
+    strike = np.searchsorted(walk.at, steps + 1.0)
+    land_pitch = walk.curves["pitch"][strike, side]
     end = targets.at(steps).ankle(foot, land_pitch, np.zeros(len(steps)))
     ankle[first] = walk.leaving.ankle[steps]
 
@@ -221,9 +241,12 @@ def _swing(
 
     gained = _leaving_speed(walk, side, free, first, np.column_stack([ankle, pitch, bend]))
     ankle, pitch, bend = ankle + gained[:, :3], pitch + gained[:, 3], bend + gained[:, 4]
-    ankle[:, 1] += _clearance(body, ground, ankle, pitch, bend, heading, at)
-    weight = smoothstep(at / 0.1) * smoothstep((1.0 - at) / 0.05)
-    ankle = drawn_near(hip[free], ankle, weight, body)
+    ankle[:, 1] += _clearance(body, ground, ankle, pitch, bend, heading, at, walk.at[free])
+    reach = [
+        np.repeat(np.linalg.norm(hip[node] - foot_at, axis=-1), count)
+        for node, foot_at in ((np.flatnonzero(free)[first], ankle[first]), (strike, end))
+    ]
+    ankle = drawn_near(hip[free], ankle, at, np.array(reach), body)
     curves["ankle"][free, side] = ankle
     curves["foot_heading"][free, side] = heading
     curves["pitch"][free, side] = pitch
@@ -276,15 +299,34 @@ def _clearance(
     bend: Float[np.ndarray, "n"],
     heading: Float[np.ndarray, "n"],
     u: Float[np.ndarray, "n"],
+    at: Float[np.ndarray, "n"],
 ) -> Float[np.ndarray, "n"]:
-    """How far the swinging foot must be lifted, meters, so that its sole clears the ground."""
+    """How far the swinging foot must be lifted, meters, so that its sole clears the ground.
+
+    ``u`` is the phase of the swing, ``at`` that of the walk.
+    """
     sole = sole_in_air(body.foot, ankle[:, 1], pitch, bend)
     points = np.stack([sole.heel, sole.ball, sole.toe], axis=1)
     x = ankle[:, None, 0] + points[..., 0] * np.sin(heading)[:, None]
     z = ankle[:, None, 2] + points[..., 0] * np.cos(heading)[:, None]
-    lowest = (points[..., 1] - ground.height(x, z)).min(-1)
+    height = points[..., 1] - ground.height(x, z)
     want = CLEARANCE * smoothstep(u / CLEARANCE_RAMP) * smoothstep((1.0 - u) / CLEARANCE_RAMP)
     want = want + AT_ONCE * smoothstep(u / AT_ONCE_RAMP) * smoothstep((1.0 - u) / AT_ONCE_RAMP)
-    short = want - lowest
+    short = want - height.min(-1)
     soft = 0.3 * want + 1e-9  # a soft maximum: no corner where the lift begins
-    return 0.5 * (short + np.sqrt(short**2 + soft**2))
+    lift = 0.5 * (short + np.sqrt(short**2 + soft**2))
+    return lift + _dips(at, height + lift[:, None]) * (u > 0.0)
+
+
+def _dips(at: Float[np.ndarray, "n"], height: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n"]:
+    """By how much nodes are too low for curves through them to stay above 0, meters.
+
+    A foot that comes down fast would overshoot between the last two nodes before it lands.
+    """
+    if len(at) < 3:
+        return np.zeros(len(at))
+    between = 0.5 * (at[1:] + at[:-1])
+    lowest = hermite(at, height, parabola_slopes(at, height), between).min(-1)
+    dip = np.maximum(-DIPS - lowest, 0.0)
+    dip = np.where(np.diff(at) < FINEST * (1.0 + 1e-9), dip, 0.0)  # not from one swing to the next
+    return np.maximum(np.append(dip, 0.0), np.append(0.0, dip))

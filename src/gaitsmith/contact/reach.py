@@ -13,7 +13,7 @@ import numpy as np
 
 from gaitsmith.conventions import SIDES
 from gaitsmith.errors import LegReachError
-from gaitsmith.geometry.curves import hann_average, running_maximum
+from gaitsmith.geometry.curves import hann_average, running_maximum, smoothstep
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -27,6 +27,8 @@ REACH = 0.9988
 REAR_REACH = 0.9993
 #: The same for a swinging foot (3.6 deg), and how softly it is kept, over leg length.
 SWING_REACH, SOFT = 0.9995, 0.0022
+#: How softly at both ends of the swing, and over what part of it that changes.
+HARD, EASED = 0.0003, (0.1, 0.05)
 #: What a bearing leg may reach between the nodes that the others hold on (3.5 deg).
 SAMPLED_REACH = 0.99953
 #: Beyond this no pose is made.
@@ -38,7 +40,7 @@ REAR_SLACK = 0.14
 #: Largest extra rise of the rear heel, radians.
 LARGEST_RAISE = 0.8
 #: Steepest that a rear foot is raised to, radians: on the tip of its toes; then hips come down.
-STEEPEST = 1.45
+STEEPEST = 1.3
 
 
 def lowering(
@@ -172,17 +174,31 @@ def raised_heel(
 def drawn_near(
     hip: Float[np.ndarray, "n 3"],
     ankle: Float[np.ndarray, "n 3"],
-    weight: Float[np.ndarray, "n"],
+    u: Float[np.ndarray, "n"],
+    ends: Float[np.ndarray, "2 n"],
     body: Body,
 ) -> Float[np.ndarray, "n 3"]:
     """Ankles of a swinging foot brought within reach of the hips, along the leg.
 
-    The distance becomes a soft minimum (:data:`SOFT`) of itself and the limit, where ``weight``
-    is 1; 0 leaves the ankle where it is.
+    The distance becomes a soft minimum (:data:`SOFT`) of itself and the limit, all through the
+    swing: ``u`` is 0 at toe-off and 1 at heel strike, ``ends`` are the distances there (m). Those
+    are reached as they are: the minimum is hard there, and what it would still take is given
+    back.
     """
-    limit, soft = SWING_REACH * body.leg_length, SOFT * body.leg_length
+    limit = SWING_REACH * body.leg_length
+    near = [smoothstep(part) for part in (u / EASED[0], (1.0 - u) / EASED[1])]
+    soft = body.leg_length * (HARD + (SOFT - HARD) * near[0] * near[1])
     line = ankle - hip
     distance = np.linalg.norm(line, axis=-1)
-    over = (distance - limit) / soft
-    less = soft * np.where(over > 30.0, over, np.log1p(np.exp(np.minimum(over, 30.0))))
-    return ankle - line * (weight * less / np.maximum(distance, 1e-12))[:, None]
+    less = _beyond(distance - limit, soft)
+    for end, share in zip(ends, near, strict=True):
+        less = less - _beyond(end - limit, HARD * body.leg_length) * (1.0 - share)
+    return ankle - line * (less / np.maximum(distance, 1e-12))[:, None]
+
+
+def _beyond(
+    over: Float[np.ndarray, "n"], soft: Float[np.ndarray, "n"] | float
+) -> Float[np.ndarray, "n"]:
+    """``max(over, 0)`` made smooth."""
+    share = over / soft
+    return soft * np.where(share > 30.0, share, np.log1p(np.exp(np.minimum(share, 30.0))))

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 #: Lengths of the grid are this far apart, over leg length; steps may be so short.
 GRAIN, SHORTEST = 0.2, 0.1
+#: Part of a step, at least, over which hips settle from the height they inherit to their own: of a
+#: foot that leaves at once they would drop in an instant.
+SETTLED = 0.15
 #: Grid steps that are remembered.
 REMEMBERED = 2048
 
@@ -36,7 +39,7 @@ class Answer:
     """Sagittal curves and overlay of one step, as :class:`SagittalStep` and ``Overlay`` have them.
 
     ``previous`` and ``length`` are what was asked for; ``curves`` has all columns side by side.
-    ``bearing`` falls from 1 to 0 while the rear foot bears.
+    ``settling`` falls from 1 to 0 while the rear foot bears, at least over :data:`SETTLED`.
     """
 
     previous: float
@@ -44,12 +47,12 @@ class Answer:
     phase: Float[np.ndarray, "T"]
     toe_off: float
     curves: Float[np.ndarray, "T C"]
-    bearing: Float[np.ndarray, "T"]
+    settling: Float[np.ndarray, "T"]
 
     def raised_from(self, height: float | None) -> None:
         """Begin at hip height ``height``, as the step before ended."""
         if height is not None and abs(height - self.curves[0, 1]) > 1e-12:
-            self.curves[:, 1] += (height - self.curves[0, 1]) * self.bearing
+            self.curves[:, 1] += (height - self.curves[0, 1]) * self.settling
 
 
 #: Columns of ``Answer.curves``: the upper body's follow.
@@ -142,7 +145,7 @@ def _answer(request: StepRequest, step: SagittalStep, over: Overlay) -> Answer:
         step.phase,
         step.toe_off,
         np.concatenate([part.T for part in parts]).T,  # each column contiguous
-        1.0 - smoothstep(step.phase / step.toe_off),
+        1.0 - smoothstep(step.phase / max(step.toe_off, SETTLED)),
     )
 
 
@@ -255,6 +258,6 @@ class _Grid:
                 if weight:
                     own += np.multiply(tables[which], weight, out=part)
         return [
-            Answer(0.0, 0.0, model.phase, model.toe_off, curves[k].T, model.bearing)
+            Answer(0.0, 0.0, model.phase, model.toe_off, curves[k].T, model.settling)
             for k in range(len(curves))
         ]

@@ -21,7 +21,7 @@ from gaitsmith.conventions import LEFT, RIGHT
 from gaitsmith.errors import InfeasibleStepError, InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.plan.course import lean_lever
-from gaitsmith.synthesis.asking import SHORTEST, Answer, Asker, usual_duration
+from gaitsmith.synthesis.asking import SETTLED, SHORTEST, Answer, Asker, usual_duration
 from gaitsmith.synthesis.bent import Bent, Flat2D
 from gaitsmith.synthesis.center import CenterPath, anchored, track
 from gaitsmith.synthesis.overlay import stride_of
@@ -307,7 +307,7 @@ def _height(body: Body, bent: Bent, flat: Flat2D, center: CenterPath) -> Float[n
     """Height of the hips: the dynamic leg length of the 2D step, [KB92a] Eq. 5.
 
     With the STANCE hip (erratum D9). At the start of a step the height is the one the step
-    before ended with; the difference is gone by toe-off.
+    before ended with; the difference is gone by toe-off, or later where that is early.
     """
     up = flat.center[:, 1]
     over_ankle = up - body.foot.ankle_height
@@ -330,7 +330,7 @@ def _height(body: Body, bent: Bent, flat: Flat2D, center: CenterPath) -> Float[n
     tall = over_ankle[start]
     reached = np.sqrt(np.maximum(tall**2 + square, (0.5 * tall) ** 2)) - tall
     reached = np.where(center.resting, extra[start], reached)
-    fade = 1.0 - smoothstep(flat.phase / flat.each(flat.toe_off))
+    fade = 1.0 - smoothstep(flat.phase / flat.each(np.maximum(flat.toe_off, SETTLED)))
     return up + extra + flat.each(reached - extra[start]) * fade
 
 

@@ -47,6 +47,9 @@ ELBOW = 0.3
 #: Sideways path per unit of speed over the own one: 7 cm at 0.7, 4 cm at 1.6 m/s (Orendurff 2004;
 #: CMU 07: less), within these factors.
 SWAY, SWAY_RANGE = -0.6, (0.7, 1.4)
+#: Harmonics of the stride that the measured path of the hips keeps (about 7 Hz): markers shake by a
+#: millimeter, which would be jolts of 15 m/s^2.
+SWAY_HARMONICS = 8
 #: Part of a stride by which the pelvis turns earlier per unit of speed over the own one, and at
 #: most: pelvis and thorax turn nearly together when slow, against each other when fast (Lamoth
 #: 2002).
@@ -112,6 +115,7 @@ class CycleOverlay:
     """
 
     def __init__(self, cycle: Cycle, leg_length: float) -> None:
+        cycle = cycle.with_(center=_evened(cycle.center, cycle.strides))
         self._cycle, self.strides = cycle, cycle.strides
         self._length = 0.5 * cycle.stride_length / leg_length
         self._duration = 0.5 * cycle.duration / np.sqrt(leg_length)
@@ -265,6 +269,13 @@ class CycleOverlay:
         if sine < 1e-12:
             return np.zeros(3)
         return rotate(inverse(base), axis * (np.arcsin(sine) / sine))
+
+
+def _evened(center: Float[np.ndarray, "K 3"], strides: int) -> Float[np.ndarray, "K 3"]:
+    """The path of the hips without what is faster than bodies sway."""
+    return np.fft.irfft(
+        np.fft.rfft(center, axis=0)[: SWAY_HARMONICS * strides + 1], len(center), axis=0
+    )
 
 
 def scaled(
