@@ -17,6 +17,7 @@ from gaitsmith.errors import FileFormatError, GaitsmithError
 from gaitsmith.gait.cycle import EVENTS, Cycle
 from gaitsmith.gait.elevation import SEGMENTS, ElevationData, elevation_of
 from gaitsmith.gait.events import Stance
+from gaitsmith.gait.learn import Learned, standing_feet
 from gaitsmith.walks.files import walk_data_from_dict, walk_data_to_dict
 from gaitsmith.walks.from_cycle import walk_data_of
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from gaitsmith.body.body import Body
-    from gaitsmith.gait.learn import Learned
     from gaitsmith.walks.data import WalkData
 
 FORMAT = "gaitsmith-gait-1"
@@ -63,6 +63,9 @@ class LearnedGait:
         Name of the file it was learned from; ``stances`` and ``span`` are seconds of it.
     notes
         What was done to the data and should be known.
+    recipe
+        What a composed gait was mixed from and how: plain JSON, see
+        :func:`gaitsmith.composing.compose`. None for a gait that was learned.
     """
 
     name: str
@@ -78,6 +81,7 @@ class LearnedGait:
     stances: tuple[Stance, ...]
     span: tuple[float, float]
     notes: tuple[str, ...]
+    recipe: dict[str, Any] | None = None
 
     @property
     def cadence(self) -> float:
@@ -85,7 +89,14 @@ class LearnedGait:
         return 120.0 / self.cycle.duration
 
 
-def learned_gait(found: Learned, *, name: str, clip: str = "", upper_body: str) -> LearnedGait:
+def learned_gait(
+    found: Learned,
+    *,
+    name: str,
+    clip: str = "",
+    upper_body: str,
+    recipe: dict[str, Any] | None = None,
+) -> LearnedGait:
     """The gait of a learned stride, exactly as its file will hold it."""
     gait = LearnedGait(
         name=name,
@@ -101,6 +112,7 @@ def learned_gait(found: Learned, *, name: str, clip: str = "", upper_body: str) 
         stances=found.stances,
         span=found.span,
         notes=found.notes,
+        recipe=recipe,
     )
     # what is walked right away and what is read from the file are the same, to the byte; unit
     # quaternions that were rounded and made unit again may be rounded otherwise
@@ -113,6 +125,35 @@ def learned_gait(found: Learned, *, name: str, clip: str = "", upper_body: str) 
     return gait
 
 
+def gait_of_cycle(
+    cycle: Cycle,
+    body: Body,
+    *,
+    name: str,
+    notes: tuple[str, ...] = (),
+    recipe: dict[str, Any] | None = None,
+) -> LearnedGait:
+    """The gait of a whole-body stride that was made and not learned from a clip.
+
+    Its steps, its width and its toe-out are what its feet do.
+    """
+    feet = standing_feet(cycle)
+    middle = 0.5 * (feet.place[0, 0] + feet.place[1, 0])
+    cycle = cycle.with_(center=cycle.center - [middle, feet.height, cycle.center[:, 2].mean()])
+    ahead = float(feet.place[1, 1] - feet.place[0, 1])
+    found = Learned(
+        cycle=cycle,
+        body=body,
+        stances=(),
+        span=(0.0, 0.0),
+        step_lengths=(cycle.stride_length - ahead, ahead),
+        step_width=float(feet.place[0, 0] - feet.place[1, 0]),
+        toe_out=(float(feet.heading[0]), float(-feet.heading[1])),
+        notes=notes,
+    )
+    return learned_gait(found, name=name, upper_body="measured", recipe=recipe)
+
+
 def _rounded(value: Any) -> Any:
     return np.round(np.asarray(value), _DIGITS).tolist()
 
@@ -120,6 +161,7 @@ def _rounded(value: Any) -> Any:
 def gait_to_dict(gait: LearnedGait) -> dict[str, Any]:
     """``gait`` as plain JSON; ``docs/reference/gait-files.md`` explains every key."""
     cycle = gait.cycle
+    made = {} if gait.recipe is None else {"recipe": gait.recipe}
     return {
         "format": FORMAT,
         "name": gait.name,
@@ -127,6 +169,7 @@ def gait_to_dict(gait: LearnedGait) -> dict[str, Any]:
         "license": cycle.license,
         "made_with": f"gaitsmith {__version__}",
         "notes": list(gait.notes),
+        **made,
         "clip": {
             "file": gait.clip,
             "span_s": _rounded(gait.span),
@@ -220,6 +263,7 @@ def gait_from_dict(data: dict[str, Any]) -> LearnedGait:
         ),
         span=(float(data["clip"]["span_s"][0]), float(data["clip"]["span_s"][1])),
         notes=tuple(data["notes"]),
+        recipe=data.get("recipe"),
     )
 
 

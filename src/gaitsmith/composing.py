@@ -1,0 +1,1 @@
+"""Recipes to ways of walking: what ``compose`` does."""
