@@ -247,7 +247,7 @@ def _leave_as_rolled(
     body: Body,
     slopes: Float[np.ndarray, "M C"],
 ) -> None:
-    """Give ankle and toes, at each toe-off, the very speed that rolling over the toe tip gives them.
+    """Give ankle and toes, at each toe-off, the speed that rolling over the toe tip gives them.
 
     Otherwise the toe tip would leave downward, into the ground.
     """
@@ -267,7 +267,7 @@ def _leave_as_rolled(
     speed = (ankle(tiny) - ankle(-tiny)) / (2.0 * tiny)
     column = ROWS["ankle"].start + 3 * side[:, None] + np.arange(3)
     slopes[node[:, None], column] = speed
-    slopes[node, columns["bend"].start + side] = -rate["pitch"] - rate["meta"]
+    slopes[node, ROWS["bend"].start + side] = -rate["pitch"] - rate["meta"]
 
 
 def local_legs(poses: Poses) -> dict[str, Float[np.ndarray, "F 2 4"]]:
