@@ -22,7 +22,7 @@ if TYPE_CHECKING:
         InvalidInputError,
     )
     from gaitsmith.gait.cycle import Cycle
-    from gaitsmith.ground import GROUNDS, Ground
+    from gaitsmith.ground import GROUNDS, Ground, read_ground
     from gaitsmith.io import load
     from gaitsmith.learning import learn
     from gaitsmith.measuring import measure
@@ -57,6 +57,7 @@ _HOMES = {
     "Markers": "motion.motion",
     "measure": "measuring",
     "Motion": "motion.motion",
+    "read_ground": "ground",
     "regenerate": "pipeline",
     "save": "pipeline",
     "save_all": "pipeline",
@@ -88,6 +89,7 @@ __all__ = [
     "Markers",
     "measure",
     "Motion",
+    "read_ground",
     "regenerate",
     "save",
     "save_all",

@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from gaitsmith.ground.edges import Crossings, Edges
 from gaitsmith.ground.flat import Flat
+from gaitsmith.ground.foot_plane import FootPlane, foot_plane
+from gaitsmith.ground.heightfield import HeightField
+from gaitsmith.ground.mesh import field_from_mesh
 from gaitsmith.ground.model import Ground
+from gaitsmith.ground.nearness import edge_distance, edges_near
+from gaitsmith.ground.reading import GROUNDS, ground_from_json, read_ground
+from gaitsmith.ground.slope import Slope
+from gaitsmith.ground.stairs import Stairs
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-#: Grounds by the name the command line uses; tests/conformance picks each up from here.
-GROUNDS: dict[str, Callable[[], Ground]] = {"flat": Flat}
-
-__all__ = ["GROUNDS", "Flat", "Ground"]
+__all__ = [
+    "GROUNDS",
+    "Crossings",
+    "Edges",
+    "Flat",
+    "FootPlane",
+    "Ground",
+    "HeightField",
+    "Slope",
+    "Stairs",
+    "edge_distance",
+    "edges_near",
+    "field_from_mesh",
+    "foot_plane",
+    "ground_from_json",
+    "read_ground",
+]

@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaitsmith._checks import number
+from gaitsmith.ground.edges import NO_EDGES
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
+    from gaitsmith.ground.edges import Edges
+
 
 @dataclass(frozen=True)
 class Flat:
-    """A level plane at ``level`` meters."""
+    """Level ground, at ``level`` meters."""
 
     level: float = 0.0
 
@@ -37,6 +40,20 @@ class Flat:
         out[..., 1] = 1.0
         return out
 
+    @property
+    def stepped(self) -> bool:
+        """See :attr:`gaitsmith.ground.Ground.stepped`."""
+        return False
+
+    def edges(self, low: tuple[float, float], high: tuple[float, float]) -> Edges:
+        """See :meth:`gaitsmith.ground.Ground.edges`: none."""
+        return NO_EDGES
+
     def as_json(self) -> dict[str, Any]:
         """See :meth:`gaitsmith.ground.Ground.as_json`."""
         return {"kind": "flat", "height": self.level}
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Flat:
+        """See :meth:`gaitsmith.ground.Ground.from_json`."""
+        return cls(data.get("height", 0.0))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,11 +9,11 @@ import numpy as np
 
 from gaitsmith.body.rig import soles_of
 from gaitsmith.conventions import BALL, HEEL, SIDES, TOE
-from gaitsmith.errors import InfeasibleError
+from gaitsmith.errors import InfeasibleError, InvalidInputError
 from gaitsmith.gait.events import FootPath, stances
 from gaitsmith.gait.learn import body_in, over_ground, walking_speed
 from gaitsmith.gait.person import person_of
-from gaitsmith.ground import GROUNDS, Flat
+from gaitsmith.ground import Flat, ground_from_json
 from gaitsmith.measures.contacts import heights
 from gaitsmith.measures.figure import Figure
 from gaitsmith.measures.footsteps import (
@@ -115,14 +114,11 @@ def _labelled(motion: Motion, joints: dict[str, int], notes: list[str]) -> Figur
 
 def _ground_of(labels: Labels, notes: list[str]) -> Ground | None:
     """The ground that the labels name, if it is known here."""
-    data = json.loads(labels.ground)
-    kind = data.get("kind") if isinstance(data, dict) else None
-    if kind == "flat":
-        return Flat(float(data.get("height", 0.0)))
-    notes.append(
-        f"the ground {kind!r} is none that can be measured against; known: {', '.join(GROUNDS)}"
-    )
-    return None
+    try:
+        return ground_from_json(labels.ground)
+    except InvalidInputError as error:
+        notes.append(f"the ground cannot be measured against: {error}")
+        return None
 
 
 def _standing_height(motion: Motion, joints: dict[str, int]) -> float | None:

@@ -118,6 +118,7 @@ def map_panel(canvas: Canvas, tracks: Tracks, area: Area) -> None:
     canvas.box(area.left, area.top, area.right, area.bottom - 20.0, palette.PANEL)
     start = tracks.motion.root_position[0]
     _map_grid(canvas, to, area, start)
+    _map_edges(canvas, tracks, to, area)
     labels = tracks.motion.labels
     if labels is not None and labels.path is not None and len(labels.path) > 1:
         path = np.stack([labels.path[:, 0], np.zeros(len(labels.path)), labels.path[:, 1]], axis=1)
@@ -150,6 +151,29 @@ def _arrow(canvas: Canvas, tracks: Tracks, to: _Map) -> None:
     front, left = ahead(heading), leftward(heading)
     tip = np.stack([end + size * front, end + 0.5 * size * left, end - 0.5 * size * left])
     canvas.polygon(to(tip), palette.PELVIS_LINE)
+
+
+def _map_edges(canvas: Canvas, tracks: Tracks, to: _Map, area: Area) -> None:
+    """Risers and other edges of the ground."""
+    if not tracks.surface.stepped:
+        return
+    half = 0.5 * np.array([area.width, area.height - 20.0]) / to.scale
+    corners = np.array([u * half[0] * to.right + v * half[1] * to.up for u in _ENDS for v in _ENDS])
+    box = (to.origin + corners)[:, [0, 2]]
+    edges = tracks.surface.edges(tuple(box.min(axis=0).tolist()), tuple(box.max(axis=0).tolist()))
+    inside = Area(area.left, area.top, area.right, area.bottom - 20.0)
+    for ends in np.stack([edges.begin, edges.end], axis=1):
+        line = np.insert(ends, 1, 0.0, axis=1)
+        along = np.linspace(line[0], line[1], 65 if len(edges) < 200 else 2)
+        shown = [(x, y) for x, y in to(along) if _in(inside, x, y)]
+        canvas.line(shown, palette.FRAME, 1.6)
+
+
+_ENDS = (-1.0, 1.0)
+
+
+def _in(area: Area, x: float, y: float) -> bool:
+    return area.left <= x <= area.right and area.top <= y <= area.bottom
 
 
 def _map_grid(canvas: Canvas, to: _Map, area: Area, start: Float[np.ndarray, "3"]) -> None:

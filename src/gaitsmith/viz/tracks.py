@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaitsmith.conventions import SIDES, ahead
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import inverse, multiply, rotate
+from gaitsmith.ground import Flat, HeightField, Stairs, ground_from_json
 from gaitsmith.motion.kinematics import motion_kinematics, sole_positions
 from gaitsmith.skin.build import build_skin
 from gaitsmith.skin.t_pose import in_t_pose
@@ -19,6 +19,7 @@ from gaitsmith.skin.t_pose import in_t_pose
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
+    from gaitsmith.ground import Ground
     from gaitsmith.motion.motion import Motion
     from gaitsmith.skin.mesh import SkinMesh
 
@@ -99,56 +100,41 @@ class Tracks:
         self, x: Float[np.ndarray, "*n"], z: Float[np.ndarray, "*n"]
     ) -> Float[np.ndarray, "*n"]:
         """Height of the ground, meters, from the labels; else the level of the lowest foot."""
-        fact = self._ground_fact
-        if fact.get("kind") == "slope":
-            return z * np.tan(np.deg2rad(fact["deg"])) + 0.0 * x
-        if fact.get("kind") == "stairs":
-            riser = np.floor((z - fact.get("start", 1.0)) / fact["tread"]) + 1.0
-            return fact["rise"] * np.clip(riser, 0.0, fact["count"]) + 0.0 * x
-        if fact.get("kind") == "heightfield":
-            height = np.array(fact["height"], dtype=np.float64).reshape(fact["shape"])
-            return _bilinear(height, fact["cell"], fact["origin"], x, z)
-        return np.full(np.broadcast_shapes(np.shape(x), np.shape(z)), float(fact["height"]))
+        return self.surface.height(x, z)
 
     @property
     def is_level(self) -> bool:
         """Whether the ground is one level plane."""
-        return "kind" not in self._ground_fact
+        return isinstance(self.surface, Flat)
 
     def ground_lines(
         self, around: Float[np.ndarray, "3"], reach: float
     ) -> tuple[Float[np.ndarray, "columns"], Float[np.ndarray, "rows"]]:
         """X and z of lines that cut the ground into plane cells (meters), risers included."""
-        fact = self._ground_fact
-        cell = 0.1 if fact.get("kind") == "heightfield" else 0.5
+        cell = 0.1 if isinstance(self.surface, HeightField) else 0.5
         x, z = (
             cell * np.arange(np.ceil((c - reach) / cell), np.floor((c + reach) / cell) + 1)
             for c in (around[0], around[2])
         )
-        if fact.get("kind") == "stairs":
-            riser = fact.get("start", 1.0) + fact["tread"] * np.arange(fact["count"])
+        if isinstance(self.surface, Stairs):
+            riser = self.surface.risers
             riser = riser[np.abs(riser - around[2]) < reach]
             z = np.unique(np.concatenate([z, riser - 1e-6, riser + 1e-6]))
         return x, z
 
     @cached_property
-    def _ground_fact(self) -> dict[str, Any]:
-        """The ground of the labels; without ``kind`` it is level."""
-        labels = self.motion.labels
-        if labels is not None:
+    def surface(self) -> Ground:
+        """The ground of the labels; without one that is known, level at the lowest foot."""
+        if self.motion.labels is not None:
             try:
-                fact = json.loads(labels.ground)
-            except ValueError:
-                fact = {}
-            if isinstance(fact, dict) and fact.get("kind") in ("slope", "stairs", "heightfield"):
-                return fact
-            if isinstance(fact, dict) and fact.get("kind") == "flat":
-                return {"height": float(fact.get("height", 0.0))}
+                return ground_from_json(self.motion.labels.ground)
+            except InvalidInputError:
+                pass  # a picture of the motion is worth having all the same
         if self.soles is None:
-            return {"height": float(self.positions[..., 1].min())}
+            return Flat(float(self.positions[..., 1].min()))
         # some foot is down in most frames; a measured one may dip below the ground in a few
         lowest = self.soles[..., 1].reshape(len(self.soles), -1).min(axis=1)
-        return {"height": float(np.quantile(lowest, 0.1))}
+        return Flat(float(np.quantile(lowest, 0.1)))
 
 
 def tracks_of(motion: Motion) -> Tracks:
@@ -222,23 +208,3 @@ def flexion(tracks: Tracks, which: str) -> Float[np.ndarray, "frames 2"] | None:
         sign = -1.0 if which == "knee" else 1.0
         out[:, s] = sign * np.arctan2(down[:, 2], -down[:, 1])
     return np.rad2deg(np.unwrap(out, axis=0))
-
-
-def _bilinear(
-    height: Float[np.ndarray, "rows columns"],
-    cell: float,
-    origin: list[float],
-    x: Float[np.ndarray, "*n"],
-    z: Float[np.ndarray, "*n"],
-) -> Float[np.ndarray, "*n"]:
-    """Height field with rows along +Z and columns along +X, clamped outside."""
-    rows, columns = height.shape
-    column = np.clip((x - origin[0]) / cell, 0.0, columns - 1.0)
-    row = np.clip((z - origin[1]) / cell, 0.0, rows - 1.0)
-    c0 = np.minimum(column.astype(int), max(columns - 2, 0))
-    r0 = np.minimum(row.astype(int), max(rows - 2, 0))
-    c1, r1 = np.minimum(c0 + 1, columns - 1), np.minimum(r0 + 1, rows - 1)
-    u, v = column - c0, row - r0
-    low = height[r0, c0] * (1.0 - u) + height[r0, c1] * u
-    high = height[r1, c0] * (1.0 - u) + height[r1, c1] * u
-    return low * (1.0 - v) + high * v
