@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 
 #: Samples of a learned stride.
 SAMPLES = 128
+#: Harmonics of the stride that the sideways path of the hips keeps, about 7 Hz: markers shake by a
+#: millimeter, which would be jolts of 15 m/s^2.
+SWAY_HARMONICS = 8
 #: Radians that a stride's arms may be apart at its ends and still be closed within one stride.
 _ARMS_GAP = float(np.radians(25.0))
 #: Least double support after each heel strike, share of the stride: 4 % in all.
@@ -267,7 +270,9 @@ def _learned(
         notes.append("left and right made mirror images of each other")
     feet = standing_feet(cycle)
     middle = 0.5 * (feet.place[0, 0] + feet.place[1, 0])
-    cycle = cycle.with_(center=cycle.center - [middle, feet.height, cycle.center[:, 2].mean()])
+    center = cycle.center - [middle, feet.height, cycle.center[:, 2].mean()]
+    center[:, 0] = without_shaking(center[:, 0], cycle.strides)
+    cycle = cycle.with_(center=center)
     ahead_right = float(feet.place[1, 1] - feet.place[0, 1])
     return Learned(
         cycle=cycle,
@@ -310,6 +315,12 @@ def _from_left(cycle: Cycle, first: int) -> Cycle:
     events = (cycle.events[::-1] - start) % 1.0
     events[0, 0] = 0.0
     return cycle.with_(center=center, rotations=turned, events=events)
+
+
+def without_shaking(path: Float[np.ndarray, "K"], strides: int) -> Float[np.ndarray, "K"]:
+    """A loop of ``strides`` strides without what is faster than bodies sway."""
+    harmonics = np.fft.rfft(path)[: SWAY_HARMONICS * strides + 1]
+    return np.fft.irfft(harmonics, len(path))
 
 
 def _legs_every_stride(cycle: Cycle) -> Cycle:

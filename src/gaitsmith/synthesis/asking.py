@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 GRAIN, SHORTEST = 0.2, 0.1
 #: Part of a step, at least, over which hips settle from the height they inherit to their own: of a
 #: foot that leaves at once they would drop in an instant.
-SETTLED = 0.15
+SETTLED = 0.3
 #: Grid steps that are remembered.
 REMEMBERED = 2048
 

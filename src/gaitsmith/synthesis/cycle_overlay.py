@@ -35,7 +35,8 @@ MOST = 1.7
 PELVIS = (1.0, 0.5)
 #: Thorax in space: 9-14 deg at all natural paces, 15-20 deg with very long steps (CMU 07).
 THORAX = (1.0, 0.0)
-#: Upper arm: 17 deg at 0.9 m/s, 24 at 1.26, 42 at 1.65; 94 deg per meter of step (CMU 07).
+#: Upper arm: 17 deg at 0.9 m/s, 24 at 1.26, 42 at 1.65; 94 deg per meter of step (CMU 07). Hands
+#: follow less swing, but never wag more than they were seen to.
 ARMS = (1.5, 0.5)
 #: Head in space: 2-5 deg at 0.9-1.65 m/s.
 HEAD = (0.75, 0.25)
@@ -47,9 +48,6 @@ ELBOW = 0.3
 #: Sideways path per unit of speed over the own one: 7 cm at 0.7, 4 cm at 1.6 m/s (Orendurff 2004;
 #: CMU 07: less), within these factors.
 SWAY, SWAY_RANGE = -0.6, (0.7, 1.4)
-#: Harmonics of the stride that the measured path of the hips keeps (about 7 Hz): markers shake by a
-#: millimeter, which would be jolts of 15 m/s^2.
-SWAY_HARMONICS = 8
 #: Part of a stride by which the pelvis turns earlier per unit of speed over the own one, and at
 #: most: pelvis and thorax turn nearly together when slow, against each other when fast (Lamoth
 #: 2002).
@@ -115,7 +113,6 @@ class CycleOverlay:
     """
 
     def __init__(self, cycle: Cycle, leg_length: float) -> None:
-        cycle = cycle.with_(center=_evened(cycle.center, cycle.strides))
         self._cycle, self.strides = cycle, cycle.strides
         self._length = 0.5 * cycle.stride_length / leg_length
         self._duration = 0.5 * cycle.duration / np.sqrt(leg_length)
@@ -242,7 +239,10 @@ class CycleOverlay:
     def _arms_of(
         self, ends: _Ends, rotations: Float[np.ndarray, "T J 4"]
     ) -> dict[str, Float[np.ndarray, "T 4"]]:
-        moved = scaled(self._arm_mean, rotations[:, self._arm_index], ends.size(ARMS)[:, None])
+        swing = ends.size(ARMS)[:, None] * np.ones(len(self._arms))
+        hands = [name.endswith("Hand") for name in self._arms]
+        swing[:, hands] = np.minimum(swing[:, hands], 1.0)
+        moved = scaled(self._arm_mean, rotations[:, self._arm_index], swing)
         bent = ELBOW * ends.faster - STRAIGHTER * ends.hanging
         out = {}
         for i, name in enumerate(self._arms):
@@ -269,13 +269,6 @@ class CycleOverlay:
         if sine < 1e-12:
             return np.zeros(3)
         return rotate(inverse(base), axis * (np.arcsin(sine) / sine))
-
-
-def _evened(center: Float[np.ndarray, "K 3"], strides: int) -> Float[np.ndarray, "K 3"]:
-    """The path of the hips without what is faster than bodies sway."""
-    return np.fft.irfft(
-        np.fft.rfft(center, axis=0)[: SWAY_HARMONICS * strides + 1], len(center), axis=0
-    )
 
 
 def scaled(
