@@ -35,6 +35,8 @@ CLEARANCE, CLEARANCE_RAMP = 0.010, 0.2
 AT_ONCE, AT_ONCE_RAMP = 0.0004, 0.05
 #: Deepest that the sole's lowest point may be drawn between nodes, meters, before they are lifted.
 DIPS = 0.0001
+#: Part of the swing over which a heel that was raised more for reach comes back.
+RAISE_FADES = 0.6
 #: Part of the swing over which its first speed is matched to the leaving foot's.
 LEAVING = 0.2
 
@@ -178,8 +180,7 @@ def _raise_rear_heels(
     leaving[walk.step[node[at_off]]] = extra[at_off]
     swing = 1 - walk.stance[walk.step]
     u = _swing_phase(walk)
-    free = (u > 0.0) & (u < 0.5)
-    fade = leaving[walk.step] * np.where(free, (1.0 - 2.0 * u) ** 3, 0.0)
+    fade = leaving[walk.step] * np.where(u > 0.0, 1.0 - smoothstep(u / RAISE_FADES), 0.0)
     every = np.arange(len(swing))
     curves["pitch"][every, swing] -= fade
     curves["bend"][every, swing] += fade

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
 #: Samples of a learned stride.
 SAMPLES = 128
-#: Harmonics of the stride that the sideways path of the hips keeps, about 7 Hz: markers shake by a
-#: millimeter, which would be jolts of 15 m/s^2.
+#: Harmonics of the stride that the path of the hips seen from above keeps, about 7 Hz: markers shake
+#: by a millimeter, which would be jolts of 15 m/s^2.
 SWAY_HARMONICS = 8
 #: Radians that a stride's arms may be apart at its ends and still be closed within one stride.
 _ARMS_GAP = float(np.radians(25.0))
@@ -271,7 +271,7 @@ def _learned(
     feet = standing_feet(cycle)
     middle = 0.5 * (feet.place[0, 0] + feet.place[1, 0])
     center = cycle.center - [middle, feet.height, cycle.center[:, 2].mean()]
-    center[:, 0] = without_shaking(center[:, 0], cycle.strides)
+    center[:, [0, 2]] = without_shaking(center[:, [0, 2]], cycle.strides)
     cycle = cycle.with_(center=center)
     ahead_right = float(feet.place[1, 1] - feet.place[0, 1])
     return Learned(
@@ -317,10 +317,10 @@ def _from_left(cycle: Cycle, first: int) -> Cycle:
     return cycle.with_(center=center, rotations=turned, events=events)
 
 
-def without_shaking(path: Float[np.ndarray, "K"], strides: int) -> Float[np.ndarray, "K"]:
+def without_shaking(path: Float[np.ndarray, "K c"], strides: int) -> Float[np.ndarray, "K c"]:
     """A loop of ``strides`` strides without what is faster than bodies sway."""
-    harmonics = np.fft.rfft(path)[: SWAY_HARMONICS * strides + 1]
-    return np.fft.irfft(harmonics, len(path))
+    harmonics = np.fft.rfft(path, axis=0)[: SWAY_HARMONICS * strides + 1]
+    return np.fft.irfft(harmonics, len(path), axis=0)
 
 
 def _legs_every_stride(cycle: Cycle) -> Cycle:
