@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
 #: Samples of a learned stride.
 SAMPLES = 128
-#: Harmonics of the stride that the path of the hips seen from above keeps, about 7 Hz: markers shake
-#: by a millimeter, which would be jolts of 15 m/s^2.
+#: Harmonics of the stride that the path of the hips seen from above keeps, about 7 Hz: markers
+#: shake by a millimeter, which would be jolts of 15 m/s^2.
 SWAY_HARMONICS = 8
 #: Radians that a stride's arms may be apart at its ends and still be closed within one stride.
 _ARMS_GAP = float(np.radians(25.0))
