@@ -46,9 +46,8 @@ class Footstep:
     curvature
         Change of direction per meter of the walk here.
     lean, gaze
-        Tangent of the lean that the curve asks for here; how far the head looks beyond
-        ``direction``, radians; both left positive. Their first and second changes per meter go
-        with them.
+        Tangent of the lean that the curve asks for here, left positive; heading that the face
+        looks to, radians. Their first and second changes per meter go with them.
     """
 
     side: int
@@ -129,7 +128,8 @@ class StepPlan:
     path
         ``(P, 2)`` x,z of the path that the plan follows, at most 2 cm apart, or None.
     middle, lean, gaze
-        ``(N, 2)``, ``(N,)``, ``(N,)``: see :class:`Footstep`. None: what the footsteps say by
+        ``(N, 2)``, ``(N,)``, ``(N,)``: see :class:`Footstep`; ``gaze`` is how far it goes beyond
+        ``direction``, left positive. None: what the footsteps say by
         themselves (:mod:`gaitsmith.plan.course`).
     """
 
@@ -220,7 +220,7 @@ class StepPlan:
         assert self.gaze is not None
         curvature = course_curvature(self.middle, self.direction)
         leading = []
-        for values in (self.lean, self.gaze):
+        for values in (self.lean, self.direction + self.gaze):
             change = course_change(values, self.middle)
             further = course_change(change, self.middle)
             leading.append(np.stack([values, change, further], axis=-1).tolist())

@@ -106,7 +106,9 @@ class Bent:
         A start or stop must have its feet side by side.
         """
         out = (self.direction == self.direction[:, 1:2]).all(-1)
-        out &= ~(self.lean.any(axis=(1, 2)) | self.gaze.any(axis=(1, 2)))
+        aside = self.lean.any(axis=(1, 2)) | self.gaze[..., 1:].any(axis=(1, 2))
+        aside |= (self.gaze[..., 0] != self.direction).any(axis=1)
+        out &= ~(aside | self.curvature.any(axis=1))
         sin, cos = sine_cosine(self.direction[:, 1:2])
         away = self.place - self.place[:, 1:2]
         along = away[..., 0] * sin + away[..., 1] * cos

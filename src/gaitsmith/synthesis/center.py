@@ -24,6 +24,7 @@ STANDING_SHARE = 0.7
 class CenterPath:
     """Where the hips are above the ground, sway left out, and where the person looks.
 
+    ``bend`` is how much the way turns per meter, left positive.
     ``resting``: steps (``(S,)``) whose hips do not begin where a step before left them.
     """
 
@@ -32,6 +33,7 @@ class CenterPath:
     left: Float[np.ndarray, "M 2"]
     lean: Float[np.ndarray, "M"]
     gaze: Float[np.ndarray, "M"]
+    bend: Float[np.ndarray, "M"]
     resting: np.ndarray
 
 
@@ -65,7 +67,13 @@ def track(
 
     chords = np.sqrt((bent.curves.coefficients[1] ** 2).sum(-1))
     lean, lean_rate = _led(bent.lean, chords, row, u)
-    gaze, _ = _led(bent.gaze, chords, row, u)
+    # where the face points stays its own whatever the hips below it do
+    looks = np.array(bent.gaze)
+    looks[..., 0] -= bent.direction[:, 1:2]
+    gaze, _ = _led(looks, chords, row, u)
+    gaze -= heading - stands
+    ends = [np.concatenate([bent.curvature[:, i], bent.curvature[:, i + 1]])[row] for i in (0, 1)]
+    bend = ends[0] + (ends[1] - ends[0]) * smoothstep(u)
     place = place + (offset * lean)[:, None] * left
     # hips that draw inside or come back face where they go themselves
     heading = heading + np.arctan(offset * lean_rate)
@@ -75,7 +83,7 @@ def track(
         ends = smoothstep((flat.phase - 1.0 + STANDING_SHARE) / STANDING_SHARE)
         place = place + begins[:, None] * flat.each(standing[:, 0])
         place = place + ends[:, None] * flat.each(standing[:, 1])
-    return CenterPath(place, heading, left, lean, gaze, resting)
+    return CenterPath(place, heading, left, lean, gaze, bend, resting)
 
 
 def _way_and_left(
@@ -167,5 +175,6 @@ def anchored(
         np.where(keep[:, None], held_left, left),
         tracked.lean,
         tracked.gaze,
+        tracked.bend,
         tracked.resting,
     )

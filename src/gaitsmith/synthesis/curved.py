@@ -24,11 +24,11 @@ from gaitsmith.plan.course import lean_lever
 from gaitsmith.synthesis.asking import SETTLED, SHORTEST, Answer, Asker, usual_duration
 from gaitsmith.synthesis.bent import Bent, Flat2D
 from gaitsmith.synthesis.center import CenterPath, anchored, track
-from gaitsmith.synthesis.overlay import stride_of
+from gaitsmith.synthesis.overlay import ArmedOverlayer, stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
 from gaitsmith.synthesis.straight import StraightGenerator
 from gaitsmith.synthesis.swing_path import SwingPath
-from gaitsmith.synthesis.turning import TRUNK_LEAN, bent_upper
+from gaitsmith.synthesis.turning import TRUNK_LEAN, Turning, bent_upper
 from gaitsmith.synthesis.upper_body import RuleOverlay
 from gaitsmith.walks.model import StepRequest, StraightWalk
 
@@ -179,18 +179,24 @@ class CurvedGenerator:
         curves["center"][:, [0, 2]] = place
         curves["center"][:, 1] = _height(body, bent, flat, path)
         curves["heading"][:] = path.heading
-        curves["pelvis"][:] = flat.column("pelvis")
         SwingPath.of(body, bent, flat).read(bent, flat, curves["ankle"], curves["foot_heading"])
         left = flat.each(bent.stance == LEFT)
         for name in ("pitch", "meta", "bend"):  # of (stance, swing) to (left, right)
             stance, swing = flat.column(name).T
             curves[name][:, LEFT] = np.where(left, stance, swing)
             curves[name][:, RIGHT] = np.where(left, swing, stance)
-        curves["upper"][:] = bent_upper(body, upper, path.gaze, trunk * path.lean)
+        turn = Turning(path.gaze, trunk * path.lean, path.bend * _walking(steps, flat))
+        curves["upper"][:], curves["pelvis"][:] = bent_upper(
+            body, upper, flat.column("pelvis"), turn, self._arms_middle(body)
+        )
         for name, values in curves.items():
             if not np.isfinite(values).all():
                 raise InvalidInputError(f"{name} of a step is not finite; its walk is no good")
         return self._cut(body, steps, bent, flat, answers, table)
+
+    def _arms_middle(self, body: Body) -> Float[np.ndarray, "U 3"] | None:
+        known = isinstance(self._overlay, ArmedOverlayer)
+        return self._overlay.arms_middle(body) if known else None
 
     def _cut(
         self,
@@ -297,6 +303,13 @@ def _standing(steps: Sequence[PlannedStep]) -> Float[np.ndarray, "S 2 2"]:
             if step.kind == kind:
                 out[i, end] = _between(step.stance, other) - step.stance.middle
     return out
+
+
+def _walking(steps: Sequence[PlannedStep], flat: Flat2D) -> Float[np.ndarray, "M"]:
+    """0 in standing, 1 in the walk."""
+    eased = smoothstep(flat.phase)
+    starts, stops = (flat.each(np.array([s.kind == k for s in steps])) for k in ("start", "stop"))
+    return np.where(starts, eased, np.where(stops, 1.0 - eased, 1.0))
 
 
 def _between(one: Footstep, other: Footstep) -> Float[np.ndarray, "2"]:

@@ -150,6 +150,11 @@ class CycleOverlay:
         sway = self._sway(body, samples, ends, center[:, 0])
         return samples.split(sway, log(pelvis), upper)
 
+    def arms_middle(self, body: Body) -> Float[np.ndarray, "U 3"]:
+        """See :class:`gaitsmith.synthesis.overlay.ArmedOverlayer`."""
+        middle = dict(zip(self._arms, log(self._arm_mean), strict=True))
+        return np.stack([middle.get(name, np.zeros(3)) for name in upper_joints(body)])
+
     def _ends(self, body: Body, requests: Sequence[StepRequest], samples: Samples) -> _Ends:
         own = self._duration * np.sqrt(body.leg_length)
         before = samples.spread([r.previous_duration or r.duration for r in requests])

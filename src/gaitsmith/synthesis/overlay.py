@@ -66,6 +66,15 @@ class BatchOverlayer(Protocol):
         ...
 
 
+@runtime_checkable
+class ArmedOverlayer(Protocol):
+    """An overlayer that knows what its arms swing about."""
+
+    def arms_middle(self, body: Body) -> Float[np.ndarray, "U 3"]:
+        """Local rotation vectors in the middle of the swing; only those of arms count."""
+        ...
+
+
 def overlays(
     overlayer: Overlayer,
     body: Body,

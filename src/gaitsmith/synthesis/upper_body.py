@@ -113,6 +113,13 @@ class RuleOverlay:
         """See :class:`gaitsmith.synthesis.overlay.BatchOverlayer`."""
         return rule_overlays(body, requests, steps, self._manner)
 
+    def arms_middle(self, body: Body) -> Float[np.ndarray, "U 3"]:
+        """See :class:`gaitsmith.synthesis.overlay.ArmedOverlayer`."""
+        arms = [joint for side in (0, 1) for joint in _arm(side, np.zeros(1), self._manner)]
+        out = np.zeros((body.spine_segments + 2 + len(arms), 3))
+        out[-len(arms) :] = np.concatenate(arms)
+        return out
+
 
 def rule_overlays(
     body: Body, requests: Sequence[StepRequest], steps: Sequence[SagittalStep], manner: Manner
