@@ -23,12 +23,17 @@ if TYPE_CHECKING:
     )
     from gaitsmith.gait.cycle import Cycle
     from gaitsmith.ground import GROUNDS, Ground, read_ground
-    from gaitsmith.io import load
+    from gaitsmith.io import load, load_performance
     from gaitsmith.learning import learn
     from gaitsmith.measuring import measure
     from gaitsmith.motion.motion import Labels, Markers, Motion
+    from gaitsmith.motion.performance import Performance
     from gaitsmith.motion.skeleton import Skeleton
     from gaitsmith.pipeline import regenerate, save, save_all, walk
+    from gaitsmith.plan.start import Start
+    from gaitsmith.scene.file import read_scene
+    from gaitsmith.scene.model import Scene, Walker
+    from gaitsmith.scene.perform import perform
     from gaitsmith.synthesis.upper_body import Manner
     from gaitsmith.walks import WALKS, StraightWalk
     from gaitsmith.walks.learned import LearnedGait
@@ -53,17 +58,24 @@ _HOMES = {
     "learn": "learning",
     "LearnedGait": "walks.learned",
     "load": "io",
+    "load_performance": "io",
     "Manner": "synthesis.upper_body",
     "Markers": "motion.motion",
     "measure": "measuring",
     "Motion": "motion.motion",
+    "perform": "scene.perform",
+    "Performance": "motion.performance",
+    "read_scene": "scene.file",
     "read_ground": "ground",
     "regenerate": "pipeline",
     "save": "pipeline",
     "save_all": "pipeline",
+    "Scene": "scene.model",
     "Skeleton": "motion.skeleton",
+    "Start": "plan.start",
     "StraightWalk": "walks",
     "walk": "pipeline",
+    "Walker": "scene.model",
     "WALKS": "walks",
 }
 
@@ -85,17 +97,24 @@ __all__ = [
     "learn",
     "LearnedGait",
     "load",
+    "load_performance",
     "Manner",
     "Markers",
     "measure",
     "Motion",
+    "perform",
+    "Performance",
+    "read_scene",
     "read_ground",
     "regenerate",
     "save",
     "save_all",
+    "Scene",
     "Skeleton",
+    "Start",
     "StraightWalk",
     "walk",
+    "Walker",
     "WALKS",
 ]
 

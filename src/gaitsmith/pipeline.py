@@ -16,6 +16,7 @@ from gaitsmith.errors import GaitsmithWarning, InvalidInputError
 from gaitsmith.ground import GROUNDS
 from gaitsmith.learning import body_of, gait_from
 from gaitsmith.motion.holding import held
+from gaitsmith.motion.performance import Performance
 from gaitsmith.plan.director import Manners, direct
 from gaitsmith.plan.follow import curve_share, follow
 from gaitsmith.plan.footsteps import StepPlan
@@ -54,8 +55,8 @@ REST = 0.4
 FASTEST_FPS, SLOWEST_FPS = 10_000.0, 5.0
 
 
-def _picture(name: str) -> Callable[[Motion, Path], None]:
-    def write(motion: Motion, path: Path) -> None:
+def _picture(name: str) -> Callable[[Any, Path], None]:
+    def write(motion: Any, path: Path) -> None:
         getattr(import_module("gaitsmith.viz"), name)(motion, path)  # late: Pillow
 
     return write
@@ -66,6 +67,12 @@ WRITERS: dict[str, io.Writer] = {
     **io.WRITERS,
     ".png": _picture("contact_sheet"),
     ".gif": _picture("gif"),
+}
+#: What several people can be written to as one file, by suffix.
+PERFORMANCE_WRITERS: dict[str, io.PerformanceWriter] = {
+    **io.PERFORMANCE_WRITERS,
+    ".png": _picture("scene_sheet"),
+    ".gif": _picture("scene_gif"),
 }
 
 
@@ -383,14 +390,18 @@ def regenerate(recipe: Motion | str | dict[str, Any]) -> Motion:
         raise InvalidInputError(f"not a recipe of a walk: {error}") from None
 
 
-def save(motion: Motion, path: str | Path) -> Path:
+def save(motion: Motion | Performance, path: str | Path) -> Path:
     """Write ``motion`` in the format of the suffix of ``path``; whole or not at all.
 
-    Formats: ``gaitsmith list formats``. Raises as :func:`gaitsmith.io.save` does.
+    Formats: ``gaitsmith list formats``. Several people go to one file, or to one each where
+    the name of the file has ``{walker}``; the first one's is returned. Raises as
+    :func:`gaitsmith.io.save` does.
     """
-    return io.save(motion, path, WRITERS)
+    return save_all(motion, [path])[0]
 
 
-def save_all(motion: Motion, paths: Iterable[str | Path]) -> list[Path]:
+def save_all(motion: Motion | Performance, paths: Iterable[str | Path]) -> list[Path]:
     """Write ``motion`` to every path, or to none if one of them cannot be written."""
+    if isinstance(motion, Performance):
+        return io.save_performance(motion, paths, WRITERS, PERFORMANCE_WRITERS)
     return io.save_all(motion, paths, WRITERS)

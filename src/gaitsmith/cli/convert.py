@@ -19,7 +19,7 @@ def convert(
     ] = None,
 ) -> None:
     """Turn a file of motion into another format, another frame rate or a cleaner dialect."""
-    from gaitsmith.cli.walk import collected_warnings
+    from gaitsmith.cli.reporting import collected_warnings
     from gaitsmith.io.convert import convert as convert_file
     from gaitsmith.pipeline import WRITERS
 

@@ -39,7 +39,7 @@ def learn(
 ) -> None:
     """Learn the gait of the person who walks in CLIP."""
     from gaitsmith import learning  # imported late: --help must cost nothing
-    from gaitsmith.cli.walk import collected_warnings
+    from gaitsmith.cli.reporting import collected_warnings
     from gaitsmith.errors import UnknownFormatError
     from gaitsmith.io import place
     from gaitsmith.walks.learned import SUFFIX, write_gait

@@ -36,7 +36,7 @@ def measure(
 ) -> None:
     """Honest numbers of motions: contact, skating, smoothness, gait."""
     from gaitsmith import measuring  # imported late: --help must cost nothing
-    from gaitsmith.cli.walk import collected_warnings
+    from gaitsmith.cli.reporting import collected_warnings
 
     found = list[dict[str, Any]]()
     for path in files:

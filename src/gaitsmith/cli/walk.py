@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import sys
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-if TYPE_CHECKING:
-    from collections.abc import Generator
+from gaitsmith.cli.reporting import collected_warnings, facts_of
 
+if TYPE_CHECKING:
     from gaitsmith.motion.motion import Motion
 
 
 def walk(
+    context: typer.Context,
     output: Annotated[
         list[Path],
         typer.Option(
@@ -40,6 +40,10 @@ def walk(
     do: Annotated[
         str | None,
         typer.Option(metavar="SCRIPT", help='Actions: "walk to 0,3; turn left 90; stand 1".'),
+    ] = None,
+    scene: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", readable=False, help="Several walkers: a TOML file."),
     ] = None,
     body: Annotated[
         str, typer.Option(help="Height in meters, a name of `list bodies`, FILE.toml or FILE.bvh.")
@@ -66,6 +70,12 @@ def walk(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Walk somewhere and write the motion."""
+    if scene is not None:
+        from gaitsmith.cli.scene import refuse_others, walk_scene
+
+        refuse_others(context)
+        walk_scene(scene, output, fps=fps, seed=seed, as_json=json)
+        return
     import math  # imported late, like the library: --help must cost nothing
 
     from gaitsmith import pipeline
@@ -120,41 +130,3 @@ def report(motion: Motion, files: list[Path], said: list[str], *, as_json: bool)
     )
     for path in files:
         print(f"wrote {path}")
-
-
-def facts_of(motion: Motion, files: list[Path], said: list[str]) -> dict[str, Any]:
-    """The object that ``--json`` prints; docs/reference/json.md explains every key."""
-    from gaitsmith.ground import GROUNDS
-    from gaitsmith.measures.promises import promises
-
-    assert motion.labels is not None
-    measured = promises(motion, GROUNDS["flat"]())
-    return {
-        "frames": len(motion),
-        "fps": motion.fps,
-        "duration_s": motion.duration,
-        "steps": len(motion.labels.footstep_side) - 2,
-        **measured,
-        "files": [str(p) for p in files],
-        "warnings": said,
-    }
-
-
-@contextmanager
-def collected_warnings() -> Generator[list[str]]:
-    """Collect the library's warnings as lines; others pass."""
-    import warnings
-
-    from gaitsmith.errors import GaitsmithWarning
-
-    lines: list[str] = []
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", GaitsmithWarning)
-        yield lines
-    for warning in caught:
-        if issubclass(warning.category, GaitsmithWarning):
-            lines.append(str(warning.message))
-        else:
-            warnings.warn_explicit(
-                warning.message, warning.category, warning.filename, warning.lineno
-            )

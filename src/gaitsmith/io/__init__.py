@@ -14,22 +14,26 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from gaitsmith.errors import UnknownFormatError
+from gaitsmith.errors import InvalidInputError, UnknownFormatError
 from gaitsmith.motion.motion import Markers, Motion
+from gaitsmith.motion.performance import Performance
 
 __all__ = [
     "MARKER_READERS",
     "READERS",
+    "PERFORMANCE_WRITERS",
     "TABLE_READERS",
     "WRITERS",
     "Reader",
     "Writer",
     "load",
     "load_markers",
+    "load_performance",
     "load_table",
     "place",
     "save",
     "save_all",
+    "save_performance",
 ]
 
 if TYPE_CHECKING:
@@ -39,6 +43,8 @@ _Read = TypeVar("_Read")
 #: Writes a Motion in package conventions to a path; units, axes and quaternion order of the
 #: format are its own business. The path has the format's suffix, though not its final name.
 Writer = Callable[[Motion, Path], None]
+#: Writes several people to one file, as :data:`Writer` does one.
+PerformanceWriter = Callable[[Performance, Path], None]
 #: Reads a file into a Motion in package conventions; FileFormatError if it cannot.
 Reader = Callable[[Path], Motion]
 
@@ -59,11 +65,22 @@ WRITERS: dict[str, Writer] = {
     ".glb": _late("gltf", "write_glb"),
     ".npz": _late("npz", "write_npz"),
 }
+#: Writers of several people in one file.
+PERFORMANCE_WRITERS: dict[str, PerformanceWriter] = {
+    ".glb": _late("gltf", "write_glb"),
+    ".npz": _late("npz", "write_npz"),
+}
+#: What the name of a file has where the name of a walker goes: one file each.
+WALKER = "{walker}"
 #: Readers by suffix, in lower case.
 READERS: dict[str, Reader] = {
     ".amc": _late("amc", "read_amc"),
     ".bvh": _late("bvh_motion", "read_bvh"),
     ".npz": _late("npz", "read_npz"),
+}
+#: Readers of several people by suffix.
+PERFORMANCE_READERS: dict[str, Callable[[Path], Performance]] = {
+    ".npz": _late("npz", "read_npz_performance"),
 }
 #: Readers of measured markers by suffix.
 MARKER_READERS: dict[str, Callable[[Path], Markers]] = {
@@ -107,6 +124,55 @@ def save_all(
     return targets
 
 
+def save_performance(
+    performance: Performance,
+    paths: Iterable[str | Path],
+    writers: Mapping[str, Writer] = WRITERS,
+    performance_writers: Mapping[str, PerformanceWriter] = PERFORMANCE_WRITERS,
+) -> list[Path]:
+    """Write several people: to one file, or to one each where its name has ``{walker}``.
+
+    Returns the files, in the order of ``paths`` and of the people. All are complete before the
+    first takes its place. Raises as :func:`save` does, and InvalidInputError for a format that
+    holds one person, or two paths that would be one file.
+    """
+    jobs: list[tuple[Callable[[Path], None], Path]] = []
+    for path in map(Path, paths):
+        if WALKER in path.name:
+            for name, motion in performance:
+                target = path.with_name(path.name.replace(WALKER, name))
+                jobs.append((partial(_writer(target, writers), motion), target))
+        elif len(performance) == 1 and path.suffix.lower() not in performance_writers:
+            jobs.append((partial(_writer(path, writers), performance.motions[0]), path))
+        else:
+            jobs.append(
+                (
+                    partial(_performance_writer(path, writers, performance_writers), performance),
+                    path,
+                )
+            )
+    targets = [target for _, target in jobs]
+    double = {target for target in targets if targets.count(target) > 1}
+    if double:
+        raise InvalidInputError(f"{min(double)} would be written twice; give it once")
+    place(jobs)
+    return targets
+
+
+def _performance_writer(
+    path: Path, writers: Mapping[str, Writer], performance_writers: Mapping[str, PerformanceWriter]
+) -> PerformanceWriter:
+    suffix = path.suffix.lower()
+    if suffix not in performance_writers:
+        _writer(path, writers)  # what no table has
+        raise InvalidInputError(
+            f"{path.name}: a {suffix} file holds one person; write one each with "
+            f"{path.stem}-{WALKER}{path.suffix}, or all in one file with "
+            + " or ".join(sorted(performance_writers))
+        )
+    return performance_writers[suffix]
+
+
 def place(jobs: Iterable[tuple[Callable[[Path], None], Path]]) -> None:
     """Let every function write a file beside its target, then move all to their targets.
 
@@ -129,19 +195,32 @@ def place(jobs: Iterable[tuple[Callable[[Path], None], Path]]) -> None:
             temporary.unlink(missing_ok=True)
 
 
-def load(path: str | Path, readers: Mapping[str, Reader] = READERS) -> Motion:
+def load(
+    path: str | Path, readers: Mapping[str, Reader] = READERS, *, walker: str | None = None
+) -> Motion:
     """Motion in the file at ``path``, read by what the table has for its suffix.
+
+    Of a file of several people the one called ``walker``; None: the first, with a warning.
 
     Raises
     ------
     UnknownFormatError
         If no reader has the suffix.
+    UnknownNameError
+        If nobody in the file is called ``walker``.
     FileFormatError
         If the file is not what its suffix says; the message says what is wrong.
     OSError
         If it cannot be opened.
     """
+    if walker is not None:
+        return load_performance(path)[walker]
     return _read(Path(path), readers)
+
+
+def load_performance(path: str | Path) -> Performance:
+    """Everybody in the file of several people at ``path`` (.npz). Raises as :func:`load` does."""
+    return _read(Path(path), PERFORMANCE_READERS)
 
 
 def load_markers(path: str | Path) -> Markers:

@@ -4,6 +4,9 @@ The frame of the package is that of glTF: meters, +Y up, facing +Z, quaternions 
 scene holds two nodes: ``Armature`` at the origin with the joints below it, and the mesh,
 which glTF wants beside the armature, not below it. The nodes stand in the rest pose. A joint
 that never moves has no animation channel where that is its rest pose, else one key.
+
+Several people are one armature and one mesh each, all moved by one animation; every name of a
+node begins with the person's, ``ann_hips``, for programs find what moves by its name.
 """
 
 from __future__ import annotations
@@ -18,14 +21,16 @@ from gaitsmith._version import __version__
 from gaitsmith.conventions import SIDES
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import IDENTITY, sign_continuous
+from gaitsmith.motion.performance import Performance
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from jaxtyping import Bool, Float, Int, Shaped
 
     from gaitsmith.motion.motion import Motion
-    from gaitsmith.skin.mesh import SkinMesh
+    from gaitsmith.skin.mesh import Paint, SkinMesh
     from gaitsmith.skin.palette import Color
 
 #: What changes less than this over a motion (meters, or components of a quaternion) is still.
@@ -36,13 +41,14 @@ _VERTICES, _INDICES = 34962, 34963
 _POINTS = ("Heel", "Ball", "Toe")
 
 
-def write_glb(motion: Motion, path: Path, *, neutral: bool = False) -> None:
+def write_glb(motion: Motion | Performance, path: Path, *, neutral: bool = False) -> None:
     """Write ``motion`` to ``path`` as GLB with a figure fitted to its skeleton.
 
     Parameters
     ----------
     motion
-        At least one frame. Any skeleton: what is no person gets a solid along every bone.
+        At least one frame. Any skeleton: what is no person gets a solid along every bone. Of a
+        performance everybody.
     path
         Where to write. The same motion gives the same bytes.
     neutral
@@ -54,29 +60,40 @@ def write_glb(motion: Motion, path: Path, *, neutral: bool = False) -> None:
         If the motion has no frames, or is so long and fine that its times coincide in the
         file's single precision.
     """
-    if len(motion) == 0:
+    if isinstance(motion, Performance) and len(motion) == 1:
+        motion = motion.motions[0]
+    people = list(motion) if isinstance(motion, Performance) else [("", motion)]
+    if len(people[0][1]) == 0:
         raise InvalidInputError("there is nothing to write: the motion has no frames")
     from gaitsmith.skin.build import build_skin  # late: a walk to BVH needs no figure
 
-    figure = build_skin(motion.skeleton)
-    if neutral:
-        figure = figure.in_one_color()
     binary = _Binary()
-    asset = {
-        "version": "2.0",
-        "generator": f"gaitsmith {__version__}",
-        "extras": {"gaitsmith": _extras(motion)},
-    }
+    materials: list[Paint] = []
     document: dict[str, Any] = {
-        "asset": asset,
+        "asset": {
+            "version": "2.0",
+            "generator": f"gaitsmith {__version__}",
+            "extras": {"gaitsmith": _all_extras(motion)},
+        },
         "scene": 0,
-        "scenes": [{"name": "Scene", "nodes": [0, 1 + len(motion.skeleton)]}],
-        "nodes": _nodes(motion, figure),
-        "meshes": [{"name": "mannequin", "primitives": _primitives(binary, figure)}],
-        "materials": [_material(name, color) for name, color in figure.paints],
-        "skins": [_skin(binary, figure)],
+        "scenes": [{"name": "Scene", "nodes": []}],
+        **{name: [] for name in ("nodes", "meshes", "materials", "skins")},
     }
-    animation = _animation(binary, motion, figure.rest[0])
+    animation: dict[str, Any] = {"name": "motion", "channels": [], "samplers": []}
+    for name, own in people:
+        figure = build_skin(own.skeleton)
+        if neutral:
+            figure = figure.in_one_color()
+        materials += [paint for paint in figure.paints if paint not in materials]
+        paints = [materials.index(paint) for paint in figure.paints]
+        base, number = len(document["nodes"]), len(document["skins"])
+        document["scenes"][0]["nodes"] += [base, base + 1 + len(own.skeleton)]
+        document["nodes"] += _nodes(own, figure, base, number, name)
+        mesh = name or "mannequin"
+        document["meshes"].append({"name": mesh, "primitives": _primitives(binary, figure, paints)})
+        document["skins"].append({"name": mesh, **_skin(binary, figure, base)})
+        _animate(animation, binary, own, figure.rest[0], base)
+    document["materials"] = [_material(name, color) for name, color in materials]
     if animation["channels"]:  # glTF allows no animation without any
         document["animations"] = [animation]
     document |= binary.description()
@@ -91,6 +108,8 @@ class _Binary:
         self.size = 0
         self.views: list[dict[str, Any]] = []
         self.accessors: list[dict[str, Any]] = []
+        #: Accessor of the times of so many keys; all motions of a file have one time axis.
+        self.times: dict[int, int] = {}
 
     def add(
         self,
@@ -131,24 +150,29 @@ class _Binary:
         }
 
 
-def _nodes(motion: Motion, figure: SkinMesh) -> list[dict[str, Any]]:
-    """Armature, joints in the order of the skeleton, mesh."""
+def _nodes(
+    motion: Motion, figure: SkinMesh, base: int, number: int, who: str
+) -> list[dict[str, Any]]:
+    """Armature, joints in the order of the skeleton, mesh: the nodes from ``base`` on."""
+    before = f"{who}_" if who else ""
     skeleton = motion.skeleton
     children: list[list[int]] = [[] for _ in skeleton.names]
     for joint, parent in enumerate(skeleton.parents):
         if parent >= 0:
-            children[parent].append(1 + joint)
-    nodes: list[dict[str, Any]] = [{"name": "Armature", "children": [1]}]
+            children[parent].append(base + 1 + joint)
+    nodes: list[dict[str, Any]] = [{"name": f"{before}Armature", "children": [base + 1]}]
     for joint, name in enumerate(skeleton.names):
         place = figure.rest[0] if joint == 0 else skeleton.offsets[joint]
-        node: dict[str, Any] = {"name": name, "translation": place.tolist()}
+        node: dict[str, Any] = {"name": before + name, "translation": place.tolist()}
         if children[joint]:
             node["children"] = children[joint]
         nodes.append(node)
-    return [*nodes, {"name": "mannequin", "mesh": 0, "skin": 0}]
+    return [*nodes, {"name": f"{before}mannequin", "mesh": number, "skin": number}]
 
 
-def _primitives(binary: _Binary, figure: SkinMesh) -> list[dict[str, Any]]:
+def _primitives(
+    binary: _Binary, figure: SkinMesh, materials: Sequence[int]
+) -> list[dict[str, Any]]:
     """One primitive a colour, each with vertices of its own."""
     primitives: list[dict[str, Any]] = []
     small = len(figure.rest) <= 256
@@ -167,7 +191,7 @@ def _primitives(binary: _Binary, figure: SkinMesh) -> list[dict[str, Any]]:
             {
                 "attributes": attributes,
                 "indices": binary.add(indices, kind, target=_INDICES),
-                "material": paint,
+                "material": materials[paint],
             }
         )
     return primitives
@@ -187,31 +211,33 @@ def _material(name: str, color: Color) -> dict[str, Any]:
     }
 
 
-def _skin(binary: _Binary, figure: SkinMesh) -> dict[str, Any]:
+def _skin(binary: _Binary, figure: SkinMesh, base: int) -> dict[str, Any]:
     """All joints, bound where they are at rest; a matrix there is stored column by column."""
     matrices = np.tile(np.eye(4), (len(figure.rest), 1, 1))
     matrices[:, 3, :3] = -figure.rest
     return {
-        "name": "mannequin",
         "inverseBindMatrices": binary.add(matrices, "f4"),
-        "joints": list(range(1, 1 + len(figure.rest))),
-        "skeleton": 1,
+        "joints": list(range(base + 1, base + 1 + len(figure.rest))),
+        "skeleton": base + 1,
     }
 
 
-def _animation(
-    binary: _Binary, motion: Motion, root_rest: Float[np.ndarray, "3"]
-) -> dict[str, Any]:
-    """Rotations of the joints and translations of the root, and of others where they move."""
+def _animate(
+    animation: dict[str, Any],
+    binary: _Binary,
+    motion: Motion,
+    root_rest: Float[np.ndarray, "3"],
+    base: int,
+) -> None:
+    """Add rotations of the joints and translations of the root, and of others where they move."""
     times = (np.arange(len(motion)) / motion.fps).astype(np.float32)
     if (np.diff(times) <= 0.0).any():
         raise InvalidInputError(
             f"{len(motion)} frames at {motion.fps:g} fps are too long and too fine for GLB, whose "
             "times are single precision; write fewer frames a second or a part of the motion"
         )
-    inputs: dict[int, int] = {}
-    samplers: list[dict[str, Any]] = []
-    channels: list[dict[str, Any]] = []
+    samplers: list[dict[str, Any]] = animation["samplers"]
+    channels: list[dict[str, Any]] = animation["channels"]
 
     def follow(joint: int, what: str, values: Float[np.ndarray, "f n"], rest: Any) -> None:
         if (np.ptp(values, axis=0) <= STILL).all():
@@ -219,12 +245,13 @@ def _animation(
             if np.abs(values - rest).max() <= STILL:
                 return
         count = len(values)
-        if count not in inputs:
-            inputs[count] = binary.add(times[:count], "f4", bounds=True)
+        if count not in binary.times:
+            binary.times[count] = binary.add(times[:count], "f4", bounds=True)
         output = binary.add(values, "f4")
-        channels.append({"sampler": len(samplers), "target": {"node": 1 + joint, "path": what}})
+        target = {"node": base + 1 + joint, "path": what}
+        channels.append({"sampler": len(samplers), "target": target})
         samplers.append(
-            {"input": inputs[count], "output": output, "interpolation": "LINEAR"},
+            {"input": binary.times[count], "output": output, "interpolation": "LINEAR"},
         )
 
     follow(0, "translation", motion.root_position, root_rest)
@@ -234,7 +261,20 @@ def _animation(
         follow(joint, "rotation", turn if turn[0, 3] >= 0.0 else -turn, IDENTITY)
         if joint and motion.translations is not None:
             follow(joint, "translation", motion.translations[:, joint], offset)
-    return {"name": "motion", "channels": channels, "samplers": samplers}
+
+
+def _all_extras(motion: Motion | Performance) -> dict[str, Any]:
+    """What glTF has no place for, of one person or of each by name."""
+    if not isinstance(motion, Performance):
+        return _extras(motion)
+    common = ("fps", "frames", "units")
+    each = {name: _extras(own) for name, own in motion}
+    first = next(iter(each.values()))
+    return {
+        **{key: first[key] for key in common},
+        "surroundings": motion.surroundings,
+        "walkers": {n: {k: e[k] for k in e if k not in common} for n, e in each.items()},
+    }
 
 
 def _extras(motion: Motion) -> dict[str, Any]:

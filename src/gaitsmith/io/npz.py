@@ -31,18 +31,29 @@ meters, seconds, radians; float64 but for the integers and flags):
 ``positions`` and ``soles`` follow from the other arrays; they are there so that a reader
 needs no kinematics. ``sole_offsets``, ``joint_ends`` and ``translations`` are what it takes
 beyond them to get the same :class:`~gaitsmith.motion.motion.Motion` back, to the last bit.
+
+A file of several people (:class:`~gaitsmith.motion.performance.Performance`) has the first
+one's arrays under these keys, so that whoever reads one person reads that; besides
+
+=================== =============== ==========================================================
+``walkers``         (W)             names of all, the first one's first
+``surroundings``                    JSON of what stands around
+``NAME/KEY``                        each of the above but ``format``, of every further person
+=================== =============== ==========================================================
 """
 
 from __future__ import annotations
 
 import json
+import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.errors import FileFormatError, InvalidInputError
+from gaitsmith.errors import FileFormatError, GaitsmithWarning, InvalidInputError
 from gaitsmith.motion.kinematics import motion_kinematics, sole_positions
 from gaitsmith.motion.motion import Labels, Motion
+from gaitsmith.motion.performance import Performance, checked_name
 from gaitsmith.motion.skeleton import Skeleton
 
 if TYPE_CHECKING:
@@ -78,27 +89,29 @@ _KEYS: dict[str, tuple[tuple[str | int, ...], str]] = {
     "joint_ends": (("J", 3), "f"),
     "translations": (("F", "J", 3), "f"),
 }
+#: Keys of a file of several people.
+_TOGETHER = ("walkers", "surroundings")
 _OPTIONAL = ("path", "joint_ends", "translations")
 #: Fixed byte order, so that the same motion is the same bytes on every machine.
 _DTYPES = {"f": "<f8", "i": "<i8", "b": "|b1"}
 _KINDS = {"f": "float64", "i": "integers", "b": "flags (bool)", "U": "text"}
 
 
-def write_npz(motion: Motion, path: Path) -> None:
+def write_npz(motion: Motion | Performance, path: Path) -> None:
     """Write ``motion`` to ``path`` as the npz of this module's page.
 
     The same motion gives the same bytes: no time stamps, fixed order, fixed byte order, no
-    compression.
+    compression. A performance of one person is written as its motion.
 
     Raises
     ------
     InvalidInputError
-        If the motion lacks contacts, sole points or labels: this file promises them, and
+        If a motion lacks contacts, sole points or labels: this file promises them, and
         nobody could tell guessed ones from known ones.
     """
     import zipfile  # late: half the import time of this module
 
-    arrays = _arrays(motion)
+    arrays = _arrays(motion) if isinstance(motion, Motion) else _all_arrays(motion)
     with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as archive:
         for key, array in arrays.items():
             entry = zipfile.ZipInfo(f"{key}.npy", date_time=(1980, 1, 1, 0, 0, 0))
@@ -111,7 +124,8 @@ def write_npz(motion: Motion, path: Path) -> None:
 def read_npz(path: Path) -> Motion:
     """Motion in the npz at ``path``; what :func:`write_npz` wrote comes back bit by bit.
 
-    ``positions`` and ``soles`` must be there but are not used: kinematics gives them.
+    ``positions`` and ``soles`` must be there but are not used: kinematics gives them. Of several
+    people the first, with a warning.
 
     Raises
     ------
@@ -121,7 +135,58 @@ def read_npz(path: Path) -> Motion:
         If it cannot be opened.
     """
     arrays = _load(path)
-    _check(path, arrays)
+    motion = _checked_motion(path, _of(arrays, ""))
+    names = _names(path, arrays)
+    if len(names) > 1:
+        warnings.warn(
+            f"{path}: of the walkers {', '.join(names)} the first is taken",
+            GaitsmithWarning,
+            stacklevel=2,
+        )
+    return motion
+
+
+def read_npz_performance(path: Path) -> Performance:
+    """Everybody in the npz at ``path``; a file of one person is one called ``walker``.
+
+    Raises as :func:`read_npz` does.
+    """
+    arrays = _load(path, everybody=True)
+    names = _names(path, arrays) or ("walker",)
+    prefixes = ["", *(f"{name}/" for name in names[1:])]
+    motions = [_checked_motion(path, _of(arrays, prefix), prefix) for prefix in prefixes]
+    around = arrays.get("surroundings", np.array("{}"))
+    try:
+        return Performance(names, tuple(motions), str(around))
+    except InvalidInputError as error:
+        raise FileFormatError(path, str(error)) from None
+
+
+def _of(
+    arrays: dict[str, Shaped[np.ndarray, "..."]], prefix: str
+) -> dict[str, Shaped[np.ndarray, "..."]]:
+    """The arrays of one person, under their own keys."""
+    own = {key: arrays[prefix + key] for key in _KEYS if prefix + key in arrays}
+    return {"format": arrays["format"], **own} if prefix and "format" in arrays else own
+
+
+def _names(path: Path, arrays: dict[str, Shaped[np.ndarray, "..."]]) -> tuple[str, ...]:
+    """Names of the people in a file; none where it does not say."""
+    if "walkers" not in arrays:
+        return ()
+    array = arrays["walkers"]
+    if array.ndim != 1 or not len(array) or array.dtype.kind != "U":
+        raise FileFormatError(path, f"'walkers' must be names, got {array.dtype} {array.shape}")
+    try:
+        return tuple(checked_name(name) for name in array.tolist())
+    except InvalidInputError as error:
+        raise FileFormatError(path, str(error)) from None
+
+
+def _checked_motion(
+    path: Path, arrays: dict[str, Shaped[np.ndarray, "..."]], prefix: str = ""
+) -> Motion:
+    _check(path, arrays, prefix)
     try:
         _check_labels(
             arrays["phase"],
@@ -132,7 +197,20 @@ def read_npz(path: Path) -> Motion:
         )
         return _motion(arrays)
     except InvalidInputError as error:
-        raise FileFormatError(path, str(error)) from None
+        raise FileFormatError(path, f"{prefix}{error}") from None
+
+
+def _all_arrays(performance: Performance) -> dict[str, Shaped[np.ndarray, "..."]]:
+    """Every array of a file of several people, in its order."""
+    first, *others = performance
+    arrays = _arrays(first[1])
+    if others or json.loads(performance.surroundings):
+        arrays["walkers"] = _text("walkers", performance.names)
+        arrays["surroundings"] = _text("surroundings", performance.surroundings)
+    for name, motion in others:
+        own = _arrays(motion)
+        arrays |= {f"{name}/{key}": own[key] for key in own if key != "format"}
+    return arrays
 
 
 def _arrays(motion: Motion) -> dict[str, Shaped[np.ndarray, "..."]]:
@@ -192,18 +270,20 @@ def _text(key: str, value: object) -> Shaped[np.ndarray, "..."]:
     return array
 
 
-def _load(path: Path) -> dict[str, Shaped[np.ndarray, "..."]]:
+def _load(path: Path, *, everybody: bool = False) -> dict[str, Shaped[np.ndarray, "..."]]:
     """Every known array of the archive; whatever NumPy and zipfile say becomes one error."""
     import zipfile
 
     arrays: dict[str, Shaped[np.ndarray, "..."]] = {}
     try:
         with zipfile.ZipFile(path) as archive:
-            entries = set(archive.namelist())
-            for key in _KEYS:
-                if f"{key}.npy" in entries:
-                    with archive.open(f"{key}.npy") as stream:
-                        arrays[key] = np.lib.format.read_array(stream, allow_pickle=False)
+            for entry in archive.namelist():
+                name = entry.removesuffix(".npy")
+                prefix, _, key = name.rpartition("/")
+                known = key in _KEYS if prefix else key in (*_KEYS, *_TOGETHER)
+                if entry.endswith(".npy") and known and (everybody or not prefix):
+                    with archive.open(entry) as stream:
+                        arrays[name] = np.lib.format.read_array(stream, allow_pickle=False)
     except OSError as error:
         if error.filename is not None:  # the disk's fault, and it says so
             raise
@@ -218,7 +298,7 @@ def _unreadable(path: Path, error: Exception) -> FileFormatError:
     return FileFormatError(path, f"not a readable npz archive: {why}")
 
 
-def _check(path: Path, arrays: dict[str, Shaped[np.ndarray, "..."]]) -> None:
+def _check(path: Path, arrays: dict[str, Shaped[np.ndarray, "..."]], prefix: str) -> None:
     """Refuse what lacks a key or has a wrong shape or kind."""
     written = arrays.get("format")
     if written is None or written.shape != () or str(written) != FORMAT:
@@ -229,7 +309,7 @@ def _check(path: Path, arrays: dict[str, Shaped[np.ndarray, "..."]]) -> None:
         if key not in arrays:
             if key in _OPTIONAL:
                 continue
-            raise FileFormatError(path, f"{key!r} is missing")
+            raise FileFormatError(path, f"{prefix + key!r} is missing")
         array = arrays[key]
         fits = array.ndim == len(shape) and all(
             sizes.setdefault(want, got) == got if isinstance(want, str) else want == got
@@ -240,12 +320,15 @@ def _check(path: Path, arrays: dict[str, Shaped[np.ndarray, "..."]]) -> None:
             named = "(" + ", ".join(map(str, shape)) + ")"
             raise FileFormatError(
                 path,
-                f"{key!r} has shape {array.shape}, wanted {named}" + f" with {known}" * bool(known),
+                f"{prefix + key!r} has shape {array.shape}, wanted {named}"
+                + f" with {known}" * bool(known),
             )
         if array.dtype.kind not in ("iu" if kind == "i" else kind) or (
             kind == "f" and array.dtype.itemsize != 8
         ):
-            raise FileFormatError(path, f"{key!r} holds {array.dtype}, wanted {_KINDS[kind]}")
+            raise FileFormatError(
+                path, f"{prefix + key!r} holds {array.dtype}, wanted {_KINDS[kind]}"
+            )
 
 
 def _check_labels(

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class _Map:
-    """World to the picture from above, the long way of the walk to the right."""
+class FloorMap:
+    """World to the picture from above: ``right`` and ``up`` are its level directions."""
 
     origin: Float[np.ndarray, "3"]
     right: Float[np.ndarray, "3"]
@@ -30,6 +30,7 @@ class _Map:
     center: tuple[float, float]
 
     def __call__(self, points: Float[np.ndarray, "n 3"]) -> list[tuple[float, float]]:
+        """Pixels of world points."""
         flat = points - self.origin
         x = self.center[0] + self.scale * (flat @ self.right)
         y = self.center[1] - self.scale * (flat @ self.up)
@@ -114,10 +115,10 @@ def map_panel(canvas: Canvas, tracks: Tracks, area: Area) -> None:
     scale = min(area.width / (np.ptp(x) + 0.5), (area.height - 20.0) / (np.ptp(y) + 0.5), 420.0)
     origin = 0.5 * (x.min() + x.max()) * right + 0.5 * (y.min() + y.max()) * up
     center = 0.5 * (area.left + area.right), 0.5 * (area.top + area.bottom - 20.0)
-    to = _Map(origin, right, up, scale, center)
+    to = FloorMap(origin, right, up, scale, center)
     canvas.box(area.left, area.top, area.right, area.bottom - 20.0, palette.PANEL)
     start = tracks.motion.root_position[0]
-    _map_grid(canvas, to, area, start)
+    floor_grid(canvas, to, area, start)
     _map_edges(canvas, tracks, to, area)
     labels = tracks.motion.labels
     if labels is not None and labels.path is not None and len(labels.path) > 1:
@@ -144,7 +145,7 @@ def _length(tracks: Tracks, side: int) -> float:
     return 0.0 if last is None else last.length
 
 
-def _arrow(canvas: Canvas, tracks: Tracks, to: _Map) -> None:
+def _arrow(canvas: Canvas, tracks: Tracks, to: FloorMap) -> None:
     """Head of an arrow where the pelvis ends, as the figure faces."""
     heading, end = float(tracks.heading[-1]), tracks.motion.root_position[-1]
     size = 11.0 / to.scale
@@ -153,7 +154,7 @@ def _arrow(canvas: Canvas, tracks: Tracks, to: _Map) -> None:
     canvas.polygon(to(tip), palette.PELVIS_LINE)
 
 
-def _map_edges(canvas: Canvas, tracks: Tracks, to: _Map, area: Area) -> None:
+def _map_edges(canvas: Canvas, tracks: Tracks, to: FloorMap, area: Area) -> None:
     """Risers and other edges of the ground."""
     if not tracks.surface.stepped:
         return
@@ -176,8 +177,10 @@ def _in(area: Area, x: float, y: float) -> bool:
     return area.left <= x <= area.right and area.top <= y <= area.bottom
 
 
-def _map_grid(canvas: Canvas, to: _Map, area: Area, start: Float[np.ndarray, "3"]) -> None:
-    """Metre lines counted from the start of the walk, with numbers below."""
+def floor_grid(
+    canvas: Canvas, to: FloorMap, area: Area, start: Float[np.ndarray, "3"], *, unit: str = "m"
+) -> None:
+    """Metre lines counted from ``start``, with numbers below."""
     step = max(nice_step(area.width / to.scale, 20), 0.5)
     ((x0, y0),) = to(start[None])
     bottom = area.bottom - 20.0
@@ -185,9 +188,9 @@ def _map_grid(canvas: Canvas, to: _Map, area: Area, start: Float[np.ndarray, "3"
         x = x0 + k * step * to.scale
         if area.left - 0.5 <= x <= area.right + 0.5:
             canvas.line([(x, area.top), (x, bottom)], palette.GRID)
-            if area.left + 6 <= x <= area.right - 6:
+            if area.left + 6 <= x <= area.right - 6 * len(unit):
                 canvas.text(x, area.bottom - 4, f"{k * step:g}", size=12, anchor="ms")
         y = y0 - k * step * to.scale
         if area.top <= y <= bottom:
             canvas.line([(area.left, y), (area.right, y)], palette.GRID)
-    canvas.text(area.right, area.bottom - 4, "m", size=12, anchor="rs")
+    canvas.text(area.right, area.bottom - 4, unit, size=12, anchor="rs")

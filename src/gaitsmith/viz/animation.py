@@ -5,34 +5,33 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image, ImageChops, ImageDraw, ImageFilter
+from PIL import Image, ImageChops, ImageDraw
 
 from gaitsmith._checks import positive
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.viz import palette
 from gaitsmith.viz.above import footprints
 from gaitsmith.viz.render import Camera, camera, draw_figure
+from gaitsmith.viz.shadows import ELEVATION as _ELEVATION
+from gaitsmith.viz.shadows import draw_prints, draw_shadow
 from gaitsmith.viz.tracks import smooth, tracks_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from jaxtyping import Float
 
     from gaitsmith.motion.motion import Motion
+    from gaitsmith.skin.palette import Color
     from gaitsmith.viz.tracks import Tracks
 
 #: The picture's height over its width; how many statures fit into the height.
 _ASPECT, _STATURES = 0.9, 1.34
-_ELEVATION = 0.27
 _CELL = 0.5
 # How far the ground is drawn around the figure, in statures.
 _REACH = 1.8
-# Where the sun stands in the camera's level frame (right, up, toward the viewer).
-_SUN = np.array([0.38, 1.0, 0.16])
 _FINE = 2
-# Pixels of the picture to one of the shadow's mask.
-_COARSE = 6
 
 
 def gif(motion: Motion, path: str | Path, *, width: int = 480, fps: float = 20.0) -> None:
@@ -61,16 +60,33 @@ def gif(motion: Motion, path: str | Path, *, width: int = 480, fps: float = 20.0
     """
     if not 120 <= width <= 1920 or width != int(width):
         raise InvalidInputError(f"width must be a whole number from 120 to 1920, got {width!r}")
-    delay = max(2, round(100.0 / min(positive("fps", fps, "pictures per second"), motion.fps)))
+    delay = delay_of(motion, fps)
     tracks = tracks_of(motion)
     scene = _Scene(tracks, width)
+    write_pictures(path, scene.draw, motion, delay)
+
+
+def delay_of(motion: Motion, fps: float) -> int:
+    """Hundredths of a second between pictures, ``fps`` of them a second if that can be."""
+    return max(2, round(100.0 / min(positive("fps", fps, "pictures per second"), motion.fps)))
+
+
+def write_pictures(
+    path: str | Path,
+    draw: Callable[[int], Image.Image],
+    motion: Motion,
+    delay: int,
+    colors: Sequence[Color] = (),
+) -> None:
+    """An animated GIF of the pictures that ``draw`` gives of frames of ``motion``.
+
+    ``colors`` are rare ones that must not be lost.
+    """
     count = int(np.floor(motion.duration * 100.0 / delay + 1e-9)) + 1
     frames = np.round(np.arange(count) * delay / 100.0 * motion.fps).astype(int)
     frames = np.minimum(frames, len(motion) - 1).tolist()
-    colors = _shared_palette([scene.draw(frame) for frame in frames[:: max(1, count // 3)]])
-    pictures = (
-        scene.draw(frame).quantize(palette=colors, dither=Image.Dither.NONE) for frame in frames
-    )
+    table = _shared_palette([draw(frame) for frame in frames[:: max(1, count // 3)]], colors)
+    pictures = (draw(frame).quantize(palette=table, dither=Image.Dither.NONE) for frame in frames)
     first = next(pictures)
     # the last picture stays a little: where a walk ends is worth a look
     times = [10 * delay] * (count - 1) + [max(600, 10 * delay)]
@@ -86,7 +102,7 @@ def gif(motion: Motion, path: str | Path, *, width: int = 480, fps: float = 20.0
     )
 
 
-def _shared_palette(samples: list[Image.Image]) -> Image.Image:
+def _shared_palette(samples: list[Image.Image], colors: Sequence[Color]) -> Image.Image:
     """One palette for all pictures, from a strip of samples."""
     width, height = samples[0].size
     strip = Image.new("RGB", (width * len(samples), height))
@@ -99,6 +115,10 @@ def _shared_palette(samples: list[Image.Image]) -> Image.Image:
         for step in range(8):
             box = (step * size, side * size, (step + 1) * size, (side + 1) * size)
             pen.rectangle(box, fill=palette.mix(palette.FLOOR, line, 0.05 * (step + 1)))
+    for row, color in enumerate(colors, start=2):
+        for step in range(4):
+            box = (step * size, row * size, (step + 1) * size, (row + 1) * size)
+            pen.rectangle(box, fill=palette.mix(palette.PAPER, color, 0.25 * (step + 1)))
     return strip.quantize(255, method=Image.Quantize.MEDIANCUT, kmeans=2)
 
 
@@ -118,8 +138,6 @@ class _Scene:
         self.heading = smooth(tracks.heading, 2.5 * fps)
         self.center = (0.5 * self.large[0], 0.84 * self.large[1])
         self.prints = footprints(tracks)
-        labels = tracks.motion.labels
-        self.landings = None if labels is None else labels.footstep_time
         # from behind when it goes up: from ahead, the higher steps would hide the feet
         self.view = "rear-quarter" if level[-1] - level[0] > 0.1 else "three-quarter"
         self.floor, self.fading = self._backdrop()
@@ -152,9 +170,9 @@ class _Scene:
             self._grid(image, view)
         else:
             self._terrain(image, view)
-        self._footprints(image, view, frame)
-        self._shadow(image, view, frame)
         tracks = self.tracks
+        draw_prints(image, tracks, self.prints, frame, view, reach=1.3 * tracks.stature)
+        draw_shadow(image, tracks, frame, view)
         draw_figure(image, tracks.figure, tracks.positions[frame], tracks.world[frame], view)
         return image.reduce(_FINE)
 
@@ -205,70 +223,3 @@ class _Scene:
             fill = palette.mix(palette.FLOOR, palette.GRID_DARK, float(share[k]))
             pen.polygon(flat[k, :, :2].ravel().tolist(), fill=fill, outline=edge)
         image.paste(layer, (0, 0), self.fading)
-
-    def _footprints(self, image: Image.Image, view: Camera, frame: int) -> None:
-        """Prints of the feet that have landed by now."""
-        now = frame / self.tracks.motion.fps
-        pen = ImageDraw.Draw(image)
-        for k, (side, shape) in enumerate(self.prints):
-            if self.landings is not None and self.landings[k] > now + 1e-9:
-                continue
-            away = float(np.linalg.norm((shape.mean(axis=0) - view.target)[[0, 2]]))
-            share = 0.34 * np.clip(1.25 - away / (1.3 * self.tracks.stature), 0.0, 1.0)
-            if share > 0.02:
-                tint = palette.mix(palette.FLOOR, palette.SIDE_LINES[side], float(share))
-                pen.polygon(view.project(shape)[:, :2].ravel().tolist(), fill=tint)
-
-    def _shadow(self, image: Image.Image, view: Camera, frame: int) -> None:
-        """The figure's own shape on the ground, soft, and darker where the feet bear."""
-        tracks = self.tracks
-        vertices, _ = tracks.figure.pose(tracks.positions[frame], tracks.world[frame])
-        level = np.array([view.axes[2, 0], 0.0, view.axes[2, 2]])
-        level /= np.linalg.norm(level)
-        sun = _SUN[0] * view.axes[0] + _SUN[1] * np.array([0.0, 1.0, 0.0]) + _SUN[2] * level
-        ground = tracks.ground(*tracks.motion.root_position[frame, [0, 2]])
-        a, b, c = (vertices[corner] for corner in tracks.figure.faces.T)
-        points = np.concatenate([vertices, (a + b + c) / 3.0])
-        fallen = points - ((points[:, 1] - ground) / sun[1])[:, None] * sun
-        # a coarse picture of dots, grown until they meet: it is blurred anyway
-        wide, high = (size // _COARSE for size in image.size)
-        x, y = (view.project(fallen)[:, :2] / _COARSE).astype(np.int64).T
-        inside = (x >= 0) & (x < wide) & (y >= 0) & (y < high)
-        dots = np.zeros((high, wide), np.uint8)
-        dots[y[inside], x[inside]] = 66
-        soft = 0.014 * tracks.stature * self.scale / _COARSE
-        mask = Image.fromarray(dots).filter(ImageFilter.MaxFilter(3))
-        mask = mask.filter(ImageFilter.GaussianBlur(soft))
-        box = mask.getbbox()
-        if box is not None:
-            left, top, right, bottom = (_COARSE * edge for edge in box)
-            shadow = mask.crop(box).resize((right - left, bottom - top), Image.Resampling.BILINEAR)
-            image.paste(palette.SHADOW, (left, top), shadow)
-        self._contact(image, view, frame)
-
-    def _contact(self, image: Image.Image, view: Camera, frame: int) -> None:
-        """A dark soft patch under each shoe, which goes as the shoe lifts."""
-        tracks = self.tracks
-        if tracks.soles is None:
-            return
-        mask = Image.new("L", image.size, 0)
-        pen = ImageDraw.Draw(mask)
-        for side in (0, 1):
-            points = tracks.soles[frame, side].copy()
-            ground = tracks.ground(points[:, 0], points[:, 2])
-            above = np.clip((points[:, 1] - ground) / (0.05 * tracks.stature), 0.0, 1.0)
-            points[:, 1] = ground
-            wide = 0.05 * tracks.stature * self.scale
-            for (x, y), fade in zip(
-                view.project(points)[:, :2].tolist(), above.tolist(), strict=True
-            ):
-                tall = wide * np.sin(_ELEVATION) * 1.6
-                fill = round(130 * (1.0 - fade) ** 2)
-                pen.ellipse((x - wide, y - tall, x + wide, y + tall), fill=fill)
-        box = mask.getbbox()
-        if box is None:
-            return
-        pad = int(0.05 * self.scale)
-        box = (box[0] - pad, box[1] - pad, box[2] + pad, box[3] + pad)
-        blurred = mask.crop(box).filter(ImageFilter.GaussianBlur(0.016 * self.scale))
-        image.paste(palette.SHADOW, box[:2], blurred)

@@ -19,6 +19,19 @@ SHADOW: Color = (70, 66, 74)
 
 #: Lines, curves and footprints of [left, right]; they tell the sides apart in grey as well.
 SIDE_LINES: tuple[Color, Color] = (38, 106, 168), (214, 92, 52)
+#: People of a scene, told apart in the order of the scene; then again from the first.
+PEOPLE: tuple[Color, ...] = (
+    (38, 106, 168),
+    (200, 84, 40),
+    (52, 130, 78),
+    (128, 74, 152),
+    (168, 126, 22),
+    (30, 134, 144),
+    (176, 58, 106),
+)
+#: What stands around: filling and edge.
+SOLID: Color = (214, 207, 194)
+SOLID_EDGE: Color = (158, 148, 130)
 PATH_LINE: Color = (140, 144, 150)
 PELVIS_LINE: Color = (96, 74, 52)
 

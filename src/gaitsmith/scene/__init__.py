@@ -1,0 +1,1 @@
+"""Several people in one place: each with a body, a gait and a script of its own."""
