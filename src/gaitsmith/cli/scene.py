@@ -61,7 +61,8 @@ def walk_scene(path: Path, output: list[Path], *, fps: float, seed: int, as_json
         print(
             f"{walker['name']:<{wide}}  {walker['steps']} steps over {walker['distance_m']:.2f} m"
         )
-    print(f"{len(performance)} walkers, {facts['duration_s']:.2f} s")
+    people = "1 walker" if len(performance) == 1 else f"{len(performance)} walkers"
+    print(f"{people}, {facts['duration_s']:.2f} s")
     for file in files:
         print(f"wrote {file}")
 

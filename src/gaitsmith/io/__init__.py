@@ -137,12 +137,13 @@ def save_performance(
     holds one person, or two paths that would be one file.
     """
     jobs: list[tuple[Callable[[Path], None], Path]] = []
+    alone = len(performance) == 1 and performance.surroundings == "{}"
     for path in map(Path, paths):
         if WALKER in path.name:
             for name, motion in performance:
                 target = path.with_name(path.name.replace(WALKER, name))
                 jobs.append((partial(_writer(target, writers), motion), target))
-        elif len(performance) == 1 and path.suffix.lower() not in performance_writers:
+        elif alone or (len(performance) == 1 and path.suffix.lower() not in performance_writers):
             jobs.append((partial(_writer(path, writers), performance.motions[0]), path))
         else:
             jobs.append(
