@@ -195,8 +195,8 @@ class CurvedGenerator:
         return self._cut(body, steps, bent, flat, answers, table)
 
     def _arms_middle(self, body: Body) -> Float[np.ndarray, "U 3"] | None:
-        known = isinstance(self._overlay, ArmedOverlayer)
-        return self._overlay.arms_middle(body) if known else None
+        overlay = self._overlay
+        return overlay.arms_middle(body) if isinstance(overlay, ArmedOverlayer) else None
 
     def _cut(
         self,
