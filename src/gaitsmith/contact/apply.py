@@ -12,8 +12,14 @@ from gaitsmith.body.leg import two_bone_ik
 from gaitsmith.body.sole import rolled_ankle
 from gaitsmith.contact.reach import SAMPLED_REACH
 from gaitsmith.contact.step_curves import ROWS, WIDTH
-from gaitsmith.conventions import UP, ahead
-from gaitsmith.geometry.curves import hermite, parabola_slopes, pchip_slopes, smoothstep
+from gaitsmith.conventions import BALL, HEEL, TOE, UP
+from gaitsmith.geometry.angles import sine_cosine
+from gaitsmith.geometry.curves import (
+    hermite,
+    parabola_slopes,
+    pchip_slopes,
+    smoothstep,
+)
 from gaitsmith.geometry.rotations import (
     about,
     component_major,
@@ -21,6 +27,7 @@ from gaitsmith.geometry.rotations import (
     inverse,
     left_of,
     multiply,
+    pitched,
     turned_left,
 )
 
@@ -156,14 +163,21 @@ class ContactPlan:
         touching = down | (phase >= 1.0)
         center = center - self._too_high(hip, ankle, touching)
         # the knee points half way between where the foot and where the pelvis face
-        towards = ahead(foot_heading) + ahead(heading)
+        towards = component_major((2, frames), 3)
+        for axis, foot_faces, faces in zip(
+            (0, 2), sine_cosine(foot_heading), sine_cosine(heading), strict=True
+        ):
+            np.add(foot_faces, faces, out=towards[..., axis])
+        towards[..., 1] = 0.0
         leg = two_bone_ik(hip, ankle, towards, thigh=self.body.thigh, shin=self.body.shin)
         toes = touching & (pitch <= 0.0)
         # where the toes bend above the sole, the ball's sole point moves as soon as they bend
         ball = toes & (meta == 0.0)
         if self.body.foot.toe_joint_height > 0.0:
             ball &= pitch == 0.0
-        contacts = np.stack([touching & (pitch >= 0.0), ball, toes], axis=-1)
+        contacts = np.empty((frames, 2, 3), dtype=np.bool_)
+        for point, bears in ((HEEL, touching & (pitch >= 0.0)), (BALL, ball), (TOE, toes)):
+            contacts[..., point] = bears.T
         upper = read("upper").reshape((len(rows) - WIDTH) // 3, 3, frames)
         return Poses(
             center=center,
@@ -175,7 +189,7 @@ class ContactPlan:
             bend=bend.T,
             knee=leg.flexion.T,
             upper=upper.transpose(2, 0, 1),
-            contacts=contacts.swapaxes(0, 1),
+            contacts=contacts,
         )
 
     def _too_high(
@@ -227,7 +241,7 @@ class ContactPlan:
         else:
             place += points[..., 1:] * stand[2]
         ankle = np.where(down[..., None], place, ankle)
-        flat = turned_left(heading, about("x", -pitch))
+        flat = pitched(heading, -pitch)
         if self.level:
             return ankle, flat
         off = self.toe_off[step]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,15 @@ import numpy as np
 
 from gaitsmith.body.sole import SolePose, rolled_ankle
 from gaitsmith.conventions import UP, ahead
-from gaitsmith.geometry.rotations import about, from_basis, inverse, log, multiply
+from gaitsmith.geometry.angles import sine_cosine
+from gaitsmith.geometry.rotations import (
+    about,
+    component_major,
+    from_basis,
+    inverse,
+    log,
+    multiply,
+)
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -37,9 +46,17 @@ class Footholds:
     tilt: Float[np.ndarray, "*n 3"]
 
     def at(self, index: object) -> Footholds:
-        """The footholds that NumPy index ``index`` picks."""
-        fields = (self.position, self.forward, self.normal, self.tilt)
-        return Footholds(*(f[index] for f in fields))  # type: ignore[index]
+        """The footholds that NumPy index ``index`` picks, each component contiguous."""
+        shape = self.position.shape[:-1]
+        which = np.arange(math.prod(shape)).reshape(shape)[index]  # type: ignore[index]
+
+        def picked(field: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*m 3"]:
+            out = component_major(np.shape(which), 3)
+            for i in range(3):
+                out[..., i] = np.take(field[..., i], which)
+            return out
+
+        return Footholds(*map(picked, (self.position, self.forward, self.normal, self.tilt)))
 
     def place(self, points: Float[np.ndarray, "*n 2"]) -> Float[np.ndarray, "*n 3"]:
         """World position of sagittal points ``(forward, up)`` from N."""
@@ -76,21 +93,19 @@ def sole_in_air(
     bend: Float[np.ndarray, "*n"],
 ) -> SolePose:
     """Sole points of a free foot, forward from its ankle, up as the ankle's height counts."""
-    c, s = np.cos(pitch), np.sin(pitch)
+    s, c = sine_cosine(pitch)
 
     def point(forward: float, up: float) -> Float[np.ndarray, "*n 2"]:
-        return np.stack([forward * c - up * s, ankle_height + forward * s + up * c], axis=-1)
+        out = component_major(np.broadcast_shapes(s.shape, np.shape(ankle_height)), 2)
+        out[..., 0] = forward * c - up * s
+        out[..., 1] = ankle_height + (forward * s + up * c)
+        return out
 
     drop = -foot.ankle_height
-    joint = point(foot.ball, drop + foot.toe_joint_height)
-    toes = pitch + bend
-    tip = joint + np.stack(
-        [
-            foot.toes * np.cos(toes) + foot.toe_joint_height * np.sin(toes),
-            foot.toes * np.sin(toes) - foot.toe_joint_height * np.cos(toes),
-        ],
-        axis=-1,
-    )
+    joint, tip = (point(foot.ball, drop + foot.toe_joint_height) for _ in range(2))
+    s_toes, c_toes = sine_cosine(pitch + bend)
+    tip[..., 0] += foot.toes * c_toes + foot.toe_joint_height * s_toes
+    tip[..., 1] += foot.toes * s_toes - foot.toe_joint_height * c_toes
     return SolePose(
         heel=point(-foot.heel, drop),
         ball=point(foot.ball, drop),

@@ -13,13 +13,16 @@ from gaitsmith.contact.reach import (
     REAR_SLACK,
     check_reach,
     drawn_near,
+    lengths,
     lowering,
     raised_heel,
 )
-from gaitsmith.contact.reference import FINEST, Proposal, ReferenceStep, stack
-from gaitsmith.conventions import SIDE_SIGN
+from gaitsmith.contact.reference import Proposal, ReferenceStep, stack
+from gaitsmith.contact.step_curves import FINEST
+from gaitsmith.conventions import LEFT, RIGHT
+from gaitsmith.geometry.angles import sine_cosine
 from gaitsmith.geometry.curves import hermite, parabola_slopes, smoothstep
-from gaitsmith.geometry.rotations import about, exp, multiply, rotate
+from gaitsmith.geometry.rotations import exp, left_of, turned_left
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,6 +42,8 @@ DIPS = 0.0001
 RAISE_FADES = 0.6
 #: Part of the swing over which its first speed is matched to the leaving foot's.
 LEAVING = 0.2
+#: Curves of one sole.
+SOLE = ("pitch", "meta", "bend")
 
 
 def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> ContactPlan:
@@ -108,7 +113,7 @@ def _lower_the_rest(
     ankle[node, side] = stands.at((walk.step[node], side)).ankle(
         body.foot, walk.curves["pitch"][node, side] - extra, walk.curves["meta"][node, side]
     )
-    short = rear & (np.linalg.norm(hip - ankle, axis=-1) > (REAR_REACH + 1e-6) * body.leg_length)
+    short = rear & (lengths(hip - ankle) > (REAR_REACH + 1e-6) * body.leg_length)
     if not short.any():
         return False
     slack = np.where(short, 0.0, np.inf)
@@ -120,20 +125,24 @@ def _lower_the_rest(
 
 def _hips(walk: Proposal, body: Body) -> Float[np.ndarray, "M 2 3"]:
     """World positions of the hip joints."""
-    pelvis = multiply(about("y", walk.curves["heading"]), exp(walk.curves["pelvis"]))
-    half = 0.5 * body.hip_width * rotate(pelvis, np.array([1.0, 0.0, 0.0]))
-    return walk.curves["center"][:, None] + SIDE_SIGN[:, None] * half[:, None]
+    pelvis = turned_left(walk.curves["heading"], exp(walk.curves["pelvis"]))
+    half = 0.5 * body.hip_width * left_of(pelvis)
+    center = walk.curves["center"]
+    out = np.empty((2, 3, len(center))).transpose(2, 0, 1)  # as the ankles: components contiguous
+    np.add(center, half, out=out[:, LEFT])
+    np.subtract(center, half, out=out[:, RIGHT])
+    return out
 
 
 def _lock(walk: Proposal, body: Body, stands: Footholds, down: Bool[np.ndarray, "M 2"]) -> None:
     """Put the ankle and the heading of every bearing foot where its foothold has them."""
-    node, side = np.nonzero(down)
-    here = stands.at((walk.step[node], side))
     curves = walk.curves
-    curves["ankle"][node, side] = here.ankle(
-        body.foot, curves["pitch"][node, side], curves["meta"][node, side]
-    )
-    curves["foot_heading"][node, side] = walk.foothold_heading[walk.step[node], side]
+    for side in (LEFT, RIGHT):
+        node = np.flatnonzero(down[:, side])
+        step = walk.step[node]
+        pitch, meta = curves["pitch"][node, side], curves["meta"][node, side]
+        curves["ankle"][node, side] = stands.at((step, side)).ankle(body.foot, pitch, meta)
+        curves["foot_heading"][node, side] = walk.foothold_heading[step, side]
 
 
 def _rear(walk: Proposal, down: Bool[np.ndarray, "M 2"]) -> Bool[np.ndarray, "M 2"]:
@@ -207,11 +216,11 @@ def _swing(
     free = swings & (u >= 0.0)
     if not free.any():
         return
-    curves, foot = walk.curves, body.foot
-    at, step, w = u[free], walk.step[free], smoothstep(u[free])[:, None]
-    pitch, bend = curves["pitch"][free, side], curves["bend"][free, side]
-    ankle = np.array(curves["ankle"][free, side])
-    heading = np.array(curves["foot_heading"][free, side])
+    foot, node = body.foot, np.flatnonzero(free)
+    curves = {name: walk.curves[name][:, side] for name in ("ankle", "foot_heading", *SOLE)}
+    at, step, w = u[node], walk.step[node], smoothstep(u[node])
+    pitch, meta, bend = (curves[name][node] for name in SOLE)
+    ankle, heading = np.take(curves["ankle"].T, node, axis=1).T, curves["foot_heading"][node]
     first = np.flatnonzero(np.concatenate([[True], np.diff(step) > 0]))
     count = np.diff(np.append(first, len(step)))
 
@@ -219,55 +228,56 @@ def _swing(
     steps = step[first]
     start = stands.at((steps, side))
     strike = np.searchsorted(walk.at, steps + 1.0)
-    land_pitch = walk.curves["pitch"][strike, side]
+    land_pitch = curves["pitch"][strike]
     end = targets.at(steps).ankle(foot, land_pitch, np.zeros(len(steps)))
     ankle[first] = walk.leaving.ankle[steps]
 
     def spread(
-        at_start: Float[np.ndarray, "k c"], at_end: Float[np.ndarray, "k c"]
-    ) -> Float[np.ndarray, "n c"]:
-        return np.repeat(at_start, count, axis=0) * (1.0 - w) + np.repeat(at_end, count, axis=0) * w
+        at_start: Float[np.ndarray, "k *c"], at_end: Float[np.ndarray, "k *c"]
+    ) -> Float[np.ndarray, "n *c"]:
+        begin, finish = (np.repeat(miss.T, count, axis=-1) for miss in (at_start, at_end))
+        return (begin * (1.0 - w) + finish * w).T
 
     ankle += spread(
-        start.ankle(foot, pitch[first], curves["meta"][free, side][first])
-        - walk.leaving.ankle[steps],
+        start.ankle(foot, pitch[first], meta[first]) - walk.leaving.ankle[steps],
         end - walk.landing.ankle[steps],
     )
     heading[first] = walk.leaving.heading[steps]
     heading += spread(
-        (walk.foothold_heading[steps, side] - walk.leaving.heading[steps])[:, None],
-        (walk.target_heading[steps] - walk.landing.heading[steps])[:, None],
-    )[:, 0]
-    pitch = pitch + np.repeat(land_pitch - walk.landing.pitch[steps], count) * w[:, 0]
+        walk.foothold_heading[steps, side] - walk.leaving.heading[steps],
+        walk.target_heading[steps] - walk.landing.heading[steps],
+    )
+    pitch += np.repeat(land_pitch - walk.landing.pitch[steps], count) * w
 
-    gained = _leaving_speed(walk, side, free, first, np.column_stack([ankle, pitch, bend]))
-    ankle, pitch, bend = ankle + gained[:, :3], pitch + gained[:, 3], bend + gained[:, 4]
-    ankle[:, 1] += _clearance(body, ground, ankle, pitch, bend, heading, at, walk.at[free])
+    swing = np.array([*ankle.T, pitch, bend])
+    swing += _leaving_speed(walk, side, node, first, swing.T).T
+    ankle, (pitch, bend) = swing[:3].T, swing[3:]
+    ankle[:, 1] += _clearance(body, ground, ankle, pitch, bend, heading, at, walk.at[node])
     reach = [
-        np.repeat(np.linalg.norm(hip[node] - foot_at, axis=-1), count)
-        for node, foot_at in ((np.flatnonzero(free)[first], ankle[first]), (strike, end))
+        np.repeat(lengths(hip[which] - foot_at), count)
+        for which, foot_at in ((node[first], ankle[first]), (strike, end))
     ]
-    ankle = drawn_near(hip[free], ankle, at, np.array(reach), body)
-    curves["ankle"][free, side] = ankle
-    curves["foot_heading"][free, side] = heading
-    curves["pitch"][free, side] = pitch
-    curves["bend"][free, side] = bend
+    here = np.take(hip.T, node, axis=1).T
+    curves["ankle"][node] = drawn_near(here, ankle, at, np.array(reach), body)
+    curves["foot_heading"][node] = heading
+    curves["pitch"][node] = pitch
+    curves["bend"][node] = bend
 
 
 def _leaving_speed(
     walk: Proposal,
     side: int,
-    free: Bool[np.ndarray, "M"],
+    node: Int[np.ndarray, "n"],
     first: Int[np.ndarray, "k"],
     swing: Float[np.ndarray, "n 5"],
 ) -> Float[np.ndarray, "n 5"]:
     """What makes the foot leave the ground with the speeds it had on the toe tip.
 
-    Columns are the ankle's three, the pitch and the bend of the toes; rows are the free nodes,
-    each swing beginning at ``first``. [KB92b] joins positions only (erratum D17). The
+    Columns are the ankle's three, the pitch and the bend of the toes; rows are the nodes of
+    ``node``, each swing beginning at ``first``. [KB92b] joins positions only (erratum D17). The
     correction fades over the first part of the swing and moves neither end.
     """
-    at, node, curves = walk.at[free], np.flatnonzero(free)[first], walk.curves
+    at, curves = walk.at[node], walk.curves
     count = np.diff(np.append(first, len(at)))
 
     def slope(
@@ -279,17 +289,17 @@ def _leaving_speed(
         return ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)
 
     after = first[:, None] + np.arange(3)
-    before = node[:, None] - np.arange(3)
+    before = node[first, None] - np.arange(3)
     pitch, meta = curves["pitch"][before, side], curves["meta"][before, side]
     bend = np.where(pitch < 0.0, -pitch - meta, 0.0)
     rear = np.concatenate(
         [curves["ankle"][before, side], pitch[..., None], bend[..., None]], axis=-1
     )
     change = slope(walk.at[before], rear) - slope(at[after], swing[after])
-    span = LEAVING * (1.0 - walk.toe_off[walk.step[node]])
+    span = LEAVING * (1.0 - walk.toe_off[walk.step[node[first]]])
     u = np.clip((at - np.repeat(at[first], count)) / np.repeat(span, count), 0.0, 1.0)
     shape = u * (1.0 - u) ** 2
-    return np.repeat(change * span[:, None], count, axis=0) * shape[:, None]
+    return (np.repeat((change * span[:, None]).T, count, axis=1) * shape).T
 
 
 def _clearance(
@@ -307,10 +317,12 @@ def _clearance(
     ``u`` is the phase of the swing, ``at`` that of the walk.
     """
     sole = sole_in_air(body.foot, ankle[:, 1], pitch, bend)
-    points = np.stack([sole.heel, sole.ball, sole.toe], axis=1)
-    x = ankle[:, None, 0] + points[..., 0] * np.sin(heading)[:, None]
-    z = ankle[:, None, 2] + points[..., 0] * np.cos(heading)[:, None]
-    height = points[..., 1] - ground.height(x, z)
+    sine, cosine = sine_cosine(heading)
+    points = (sole.heel, sole.ball, sole.toe)
+    height = np.empty((len(ankle), len(points)))
+    for i, point in enumerate(points):
+        x, z = ankle[:, 0] + point[:, 0] * sine, ankle[:, 2] + point[:, 0] * cosine
+        height[:, i] = point[:, 1] - ground.height(x, z)
     want = CLEARANCE * smoothstep(u / CLEARANCE_RAMP) * smoothstep((1.0 - u) / CLEARANCE_RAMP)
     want = want + AT_ONCE * smoothstep(u / AT_ONCE_RAMP) * smoothstep((1.0 - u) / AT_ONCE_RAMP)
     short = want - height.min(-1)

@@ -43,6 +43,12 @@ LARGEST_RAISE = 0.8
 STEEPEST = 1.3
 
 
+def lengths(vectors: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n"]:
+    """Lengths of vectors, much quicker than NumPy's norm where components are contiguous."""
+    x, y, z = (vectors[..., i] for i in range(3))
+    return np.sqrt(x * x + y * y + z * z)
+
+
 def lowering(
     at: Float[np.ndarray, "M"],
     hip: Float[np.ndarray, "M 2 3"],
@@ -70,7 +76,8 @@ def lowering(
         Where a bearing foot is farther to the side of the hips than the leg is long.
     """
     limit = REACH * leg_length
-    across = ((hip - ankle)[..., [0, 2]] ** 2).sum(-1)
+    line = hip - ankle
+    across = line[..., 0] ** 2 + line[..., 2] ** 2
     bears = np.isfinite(slack)
     lost = bears & (across >= limit**2)
     if lost.any():
@@ -117,7 +124,7 @@ def check_reach(
     leg_length: float,
 ) -> None:
     """Raise LegReachError if a bearing leg is longer than it can be."""
-    distance = np.where(down, np.linalg.norm(hip - ankle, axis=-1), 0.0)
+    distance = np.where(down, lengths(hip - ankle), 0.0)
     if distance.max() <= LIMIT * leg_length:
         return
     node, side = np.unravel_index(int(distance.argmax()), distance.shape)
@@ -189,7 +196,7 @@ def drawn_near(
     near = [smoothstep(part) for part in (u / EASED[0], (1.0 - u) / EASED[1])]
     soft = body.leg_length * (HARD + (SOFT - HARD) * near[0] * near[1])
     line = ankle - hip
-    distance = np.linalg.norm(line, axis=-1)
+    distance = lengths(line)
     less = _beyond(distance - limit, soft)
     for end, share in zip(ends, near, strict=True):
         less = less - _beyond(end - limit, HARD * body.leg_length) * (1.0 - share)

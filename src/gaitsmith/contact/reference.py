@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.contact.step_curves import CURVES, FINEST, StepCurves, curve_of
+from gaitsmith.conventions import LEFT, RIGHT
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import end_slope_correction
 
@@ -190,10 +191,8 @@ def bearing(
     phase: Float[np.ndarray, "n"],
 ) -> Bool[np.ndarray, "n 2"]:
     """Whether [left, right] stand on their footholds at ``phase`` of ``step``."""
-    down = np.ones((len(step), 2), dtype=np.bool_)
-    swing = 1 - stance[step]
-    down[np.arange(len(step)), swing] = phase <= toe_off[step]
-    return down
+    lifted, stands = phase > toe_off[step], stance[step]
+    return ~np.array([lifted & (stands != side) for side in (LEFT, RIGHT)]).T
 
 
 def stack(steps: Sequence[ReferenceStep]) -> Proposal:

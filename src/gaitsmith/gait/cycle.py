@@ -113,5 +113,8 @@ class Cycle:
         slopes = np.gradient(table, 1.0 / count, axis=0)
         share = np.asarray(stride_phase, dtype=np.float64) / self.strides
         values = hermite(grid, table, slopes, share % 1.0)
-        turned = values[:, 3:].reshape(-1, joints, 4)
-        return values[:, :3], turned / np.linalg.norm(turned, axis=-1, keepdims=True)
+        # each component contiguous: those who read it work on them one by one
+        turned = np.ascontiguousarray(values.T)[3:].reshape(joints, 4, -1)
+        x, y, z, w = turned.transpose(1, 0, 2)
+        turned /= np.sqrt(x * x + y * y + z * z + w * w)[:, None]
+        return values[:, :3], turned.transpose(2, 0, 1)

@@ -88,6 +88,19 @@ def turned_left(
     return out
 
 
+def pitched(
+    heading: Float[np.ndarray, "*n"], angle: Float[np.ndarray, "*n"]
+) -> Float[np.ndarray, "*n 4"]:
+    """By ``angle`` radians about +X, then turned left about +Y by ``heading``."""
+    (s, c), (sine, cosine) = sine_cosine(0.5 * heading), sine_cosine(0.5 * angle)
+    out = component_major(np.broadcast_shapes(s.shape, sine.shape), 4)
+    np.multiply(c, sine, out=out[..., 0])
+    np.multiply(s, cosine, out=out[..., 1])
+    np.multiply(-s, sine, out=out[..., 2])
+    np.multiply(c, cosine, out=out[..., 3])
+    return out
+
+
 def left_of(q: Float[np.ndarray, "*n 4"]) -> Float[np.ndarray, "*n 3"]:
     """+X, a person's left, turned by ``q``."""
     x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]

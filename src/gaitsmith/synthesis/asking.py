@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from jaxtyping import Bool, Float, Int
 
     from gaitsmith.body.body import Body
+    from gaitsmith.plan.footsteps import PlannedStep
     from gaitsmith.synthesis.overlay import Overlay, Overlayer
     from gaitsmith.walks.model import SagittalStep, StepRequest, StraightWalk
 
@@ -32,31 +33,8 @@ GRAIN, SHORTEST = 0.2, 0.1
 SETTLED = 0.3
 #: Grid steps that are remembered.
 REMEMBERED = 2048
-
-
-@dataclass(eq=False, slots=True)
-class Answer:
-    """Sagittal curves and overlay of one step, as :class:`SagittalStep` and ``Overlay`` have them.
-
-    ``previous`` and ``length`` are what was asked for; ``curves`` has all columns side by side.
-    ``settling`` falls from 1 to 0 while the rear foot bears, at least over :data:`SETTLED`.
-    """
-
-    previous: float
-    length: float
-    phase: Float[np.ndarray, "T"]
-    toe_off: float
-    curves: Float[np.ndarray, "T C"]
-    settling: Float[np.ndarray, "T"]
-
-    def raised_from(self, height: float | None) -> None:
-        """Begin at hip height ``height``, as the step before ended."""
-        if height is not None and abs(height - self.curves[0, 1]) > 1e-12:
-            self.curves[:, 1] += (height - self.curves[0, 1]) * self.settling
-
-
-#: Columns of ``Answer.curves``: the upper body's follow.
-COLUMNS = {
+#: Rows of a table of them: the upper body's follow.
+ROWS = {
     "center": slice(0, 2),
     "ankle": slice(2, 6),
     "pitch": slice(6, 8),
@@ -66,6 +44,80 @@ COLUMNS = {
     "pelvis": slice(13, 16),
     "upper": slice(16, None),
 }
+HIP_HEIGHT = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """Sagittal curves and overlay of one step, as :class:`SagittalStep` and ``Overlay`` have them.
+
+    ``table`` has all curves, in the rows :data:`ROWS`; ``settling`` falls from 1 to 0 while the
+    rear foot bears, at least over :data:`SETTLED`. ``heights``: of the hips as it begins and
+    ends, meters.
+    """
+
+    phase: Float[np.ndarray, "T"]
+    toe_off: float
+    table: Float[np.ndarray, "C T"]
+    settling: Float[np.ndarray, "T"]
+    heights: tuple[float, float]
+
+
+@dataclass(eq=False, slots=True)
+class Answer:
+    """What a straight walk says to one request: one step that was asked for, or a mean of some.
+
+    Attributes
+    ----------
+    previous, length
+        What was asked for.
+    steps, shares
+        Of the mean; alike but for their tables.
+    raised
+        Meters by which the hips begin higher than these, and then settle.
+    """
+
+    previous: float
+    length: float
+    steps: list[Asked]
+    shares: list[float]
+    raised: float = 0.0
+
+    @property
+    def phase(self) -> Float[np.ndarray, "T"]:
+        """Of the samples."""
+        return self.steps[0].phase
+
+    @property
+    def toe_off(self) -> float:
+        """Phase at which the rear foot leaves."""
+        return self.steps[0].toe_off
+
+    @property
+    def end_height(self) -> float:
+        """Of the hips, meters."""
+        return self._height(1)
+
+    def raised_from(self, height: float | None) -> None:
+        """Begin at hip height ``height``, as the step before ended."""
+        if height is not None:
+            miss = height - self._height(0)
+            self.raised = miss if abs(miss) > 1e-12 else 0.0
+
+    def _height(self, end: int) -> float:
+        return sum(s.heights[end] * share for s, share in zip(self.steps, self.shares, strict=True))
+
+    def table(self) -> Float[np.ndarray, "C T"]:
+        """All curves, in the rows :data:`ROWS`."""
+        if len(self.steps) == 1 and not self.raised:
+            return self.steps[0].table
+        out = self.steps[0].table * self.shares[0]
+        part = np.empty_like(out)
+        for step, share in zip(self.steps[1:], self.shares[1:], strict=True):
+            out += np.multiply(step.table, share, out=part)
+        if self.raised:
+            out[HIP_HEIGHT] += self.raised * self.steps[0].settling
+        return out
 
 
 class Asker:
@@ -73,12 +125,12 @@ class Asker:
 
     def __init__(self, walk: StraightWalk, overlay: Overlayer) -> None:
         self._walk, self._overlay = walk, overlay
-        self._known: dict[tuple[Body, StepRequest], Answer] = {}
+        self._known: dict[Body, dict[StepRequest, Asked]] = {}
 
     def ask(self, body: Body, request: StepRequest) -> Answer:
-        """The answer to just this request; a copy, to be changed at will."""
-        found = self.ask_all(body, [request])[0]
-        return replace(found, curves=np.array(found.curves, order="K"))
+        """The answer to just this request."""
+        step = self.ask_all(body, [request])[0]
+        return Answer(request.previous_length, request.length, [step], [1.0])
 
     def can(self, body: Body, request: StepRequest) -> bool:
         """Whether ``body`` can take such a step."""
@@ -88,17 +140,17 @@ class Asker:
             return False
         return True
 
-    def ask_all(self, body: Body, requests: Sequence[StepRequest]) -> list[Answer]:
-        """The answers to these requests, remembered: not to be changed."""
-        if len(self._known) + len(requests) > REMEMBERED:
-            self._known.clear()
-        new = [r for r in dict.fromkeys(requests) if (body, r) not in self._known]
+    def ask_all(self, body: Body, requests: Sequence[StepRequest]) -> list[Asked]:
+        """The steps that answer these requests, remembered."""
+        known = self._known.setdefault(body, {})
+        if sum(map(len, self._known.values())) + len(requests) > REMEMBERED:
+            self._known = {body: (known := {})}
+        new = [r for r in dict.fromkeys(requests) if r not in known]
         if new:
             steps = [self._walk.step(body, r) for r in new]
             laid = overlays(self._overlay, body, new, steps)
-            for request, step, over in zip(new, steps, laid, strict=True):
-                self._known[body, request] = _answer(request, step, over)
-        return [self._known[body, r] for r in requests]
+            known |= dict(zip(new, map(_asked, steps, laid), strict=True))
+        return [known[r] for r in requests]
 
     def table(
         self, body: Body, requests: Sequence[StepRequest], anchor: float
@@ -113,21 +165,19 @@ class Asker:
         with suppress(InfeasibleStepError):  # then those that can be asked are asked group by group
             self.ask_all(body, [r for at in places for r in at.nodes])
         for members, at in zip(groups.values(), places, strict=True):
-            for k, answer in zip(at.known.tolist(), grid.read(at), strict=True):
-                i = members[k]
-                if answer is not None:
-                    answer.previous, answer.length = requests[i].previous_length, requests[i].length
+            own = [members[k] for k in at.known.tolist()]
+            for i, answer in zip(own, grid.read(at, [requests[i] for i in own]), strict=True):
                 out[i] = answer
         return out
 
 
-def usual_duration(requests: Sequence[StepRequest]) -> float:
+def usual_duration(steps: Sequence[PlannedStep | StepRequest]) -> float:
     """The duration that most steps have, to a hundredth of a second."""
-    values, counts = np.unique([round(r.duration, 2) for r in requests], return_counts=True)
+    values, counts = np.unique([round(s.duration, 2) for s in steps], return_counts=True)
     return float(values[counts.argmax()])
 
 
-def _answer(request: StepRequest, step: SagittalStep, over: Overlay) -> Answer:
+def _asked(step: SagittalStep, over: Overlay) -> Asked:
     count = len(step.phase)
     parts = (
         step.center,
@@ -139,13 +189,12 @@ def _answer(request: StepRequest, step: SagittalStep, over: Overlay) -> Answer:
         over.pelvis,
         over.upper.reshape(count, -1),
     )
-    return Answer(
-        request.previous_length,
-        request.length,
-        step.phase,
-        step.toe_off,
-        np.concatenate([part.T for part in parts]).T,  # each column contiguous
-        1.0 - smoothstep(step.phase / max(step.toe_off, SETTLED)),
+    return Asked(
+        phase=step.phase,
+        toe_off=step.toe_off,
+        table=np.concatenate([part.T for part in parts]),
+        settling=1.0 - smoothstep(step.phase / max(step.toe_off, SETTLED)),
+        heights=(float(step.center[0, 1]), float(step.center[-1, 1])),
     )
 
 
@@ -231,33 +280,28 @@ class _Grid:
         # a corner without a share is not asked for: the one at hand stands in
         up, on = (a != 0.0).astype(np.int64), (b != 0.0).astype(np.int64)
         corners = np.array([[i, j], [i, j + on], [i + up, j], [i + up, j + on]])
-        nodes, index = np.unique(
-            corners.transpose(0, 2, 1).reshape(-1, 2), axis=0, return_inverse=True
-        )
-        asks = [self._asked(like, *node) for node in nodes.tolist()]
+        # pairs as complex numbers: sorted much more quickly than rows
+        nodes, index = np.unique(corners[:, 0] + 1j * corners[:, 1], return_inverse=True)
+        asks = [self._asked(like, int(n.real), int(n.imag)) for n in nodes.tolist()]
         return _Places(known, asks, index.reshape(4, len(known)), share)
 
-    def read(self, at: _Places) -> Sequence[Answer | None]:
-        """Answers at ``at``, of the lengths of the grid; None where its nodes are no good."""
+    def read(self, at: _Places, requests: Sequence[StepRequest]) -> Sequence[Answer | None]:
+        """Answers to the requests ``at``; None where the nodes around them are no good."""
         if not len(at.known):
             return []
+        nothing = [None] * len(at.known)
         try:
-            answers = self._asker.ask_all(self._body, at.nodes)
+            steps = self._asker.ask_all(self._body, at.nodes)
         except InfeasibleStepError:
-            return [None] * len(at.known)
-        model = answers[0]
-        for other in answers[1:]:
+            return nothing
+        model = steps[0]
+        for other in steps[1:]:
             if other.toe_off != model.toe_off or not np.array_equal(other.phase, model.phase):
-                return [None] * len(at.known)  # its events move with the length
-        tables = [a.curves.T for a in answers]
-        curves = np.zeros((len(at.known), *tables[0].shape))
-        part = np.empty_like(tables[0])
-        corner, share = at.corner.T.tolist(), at.share.T.tolist()
-        for own, around, weights in zip(curves, corner, share, strict=True):
-            for which, weight in zip(around, weights, strict=True):
-                if weight:
-                    own += np.multiply(tables[which], weight, out=part)
-        return [
-            Answer(0.0, 0.0, model.phase, model.toe_off, curves[k].T, model.settling)
-            for k in range(len(curves))
-        ]
+                return nothing  # its events move with the length
+        out = []
+        corners, shares = at.corner.T.tolist(), at.share.T.tolist()
+        for request, around, weights in zip(requests, corners, shares, strict=True):
+            which = [k for k in range(4) if weights[k]]
+            own, share = [steps[around[k]] for k in which], [weights[k] for k in which]
+            out.append(Answer(request.previous_length, request.length, own, share))
+        return out

@@ -12,7 +12,7 @@ from gaitsmith.conventions import SIDE_SIGN
 from gaitsmith.geometry.angles import sine_cosine
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.plan.course import course_pieces
-from gaitsmith.synthesis.asking import COLUMNS
+from gaitsmith.synthesis.asking import ROWS
 from gaitsmith.synthesis.straight import STRAIGHT
 
 if TYPE_CHECKING:
@@ -146,7 +146,7 @@ class Flat2D:
     center: Float[np.ndarray, "M 2"]
     ankle: Float[np.ndarray, "M 2 2"]
     asked: Float[np.ndarray, "S 2"]
-    curves: Float[np.ndarray, "M C"]
+    table: Float[np.ndarray, "C M"]
 
     @staticmethod
     def of(answers: Sequence[Answer], length: Float[np.ndarray, "S 2"]) -> Flat2D:
@@ -160,9 +160,8 @@ class Flat2D:
         lifted = np.repeat(toe_off, counts)
         swing = np.maximum((phase - lifted) / (1.0 - lifted), 0.0)
         asked = np.array([(s.previous, s.length) for s in answers])
-        # each column contiguous: they are worked on one by one
-        curves = np.concatenate([s.curves.T for s in answers], axis=1).T
-        center = np.array(curves[:, COLUMNS["center"]], order="F")
+        table = np.concatenate([answer.table() for answer in answers], axis=1)
+        center = np.array(table[ROWS["center"]]).T
         # very short steps are asked for longer: smoothly pressed together over the step
         ratio = np.where(asked > 0.0, length / np.where(asked > 0.0, asked, 1.0), 1.0)
         ratio = np.where(np.abs(ratio - 1.0) < 1e-9, 1.0, ratio)
@@ -178,9 +177,9 @@ class Flat2D:
             toe_off=toe_off,
             swing=swing,
             center=center,
-            ankle=curves.T[COLUMNS["ankle"]].reshape(2, 2, -1).transpose(2, 0, 1),
+            ankle=table[ROWS["ankle"]].reshape(2, 2, -1).transpose(2, 0, 1),
             asked=asked,
-            curves=curves,
+            table=table,
         )
 
     def each(self, values: Float[np.ndarray, "S *c"]) -> Float[np.ndarray, "M *c"]:
@@ -188,8 +187,8 @@ class Flat2D:
         return np.repeat(values.T, self.counts, axis=-1).T
 
     def column(self, name: str) -> Float[np.ndarray, "M c"]:
-        """Samples of one of the curves."""
-        return self.curves[:, COLUMNS[name]]
+        """Samples of one of the curves, each component contiguous."""
+        return self.table[ROWS[name]].T
 
     @property
     def last(self) -> Int[np.ndarray, "S"]:

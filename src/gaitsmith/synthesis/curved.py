@@ -28,7 +28,7 @@ from gaitsmith.synthesis.overlay import ArmedOverlayer, stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
 from gaitsmith.synthesis.straight import StraightGenerator
 from gaitsmith.synthesis.swing_path import SwingPath
-from gaitsmith.synthesis.turning import TRUNK_LEAN, Turning, bent_upper
+from gaitsmith.synthesis.turning import TRUNK_LEAN, Turning, bend_upper
 from gaitsmith.synthesis.upper_body import RuleOverlay
 from gaitsmith.walks.model import StepRequest, StraightWalk
 
@@ -106,14 +106,13 @@ class CurvedGenerator:
         straight = [not self._exact and same for same in bent.straight(steps).tolist()]
         if all(straight):
             return self._straight.prepare_all(body, state, steps)
-        requests = _requests(body, state, steps, bent.length, self._overlay.strides)
         tabled = not self._exact and len(steps) > 1
+        # the table is of one pace; so are then the steps that it does not hold
+        pace = usual_duration(steps) if tabled else None
+        requests = _requests(body, state, steps, bent.length, self._overlay.strides, pace)
         anchor = _steady(bent.length[:, 1])
         if tabled:
             _bend_ends(straight, bent.length, anchor)
-            # the table is of one pace; so are then the steps that it does not hold
-            usual = usual_duration(requests)
-            requests = [replace(r, duration=usual, previous_duration=None) for r in requests]
         curved = [i for i, same in enumerate(straight) if not same]
         read: dict[int, Answer | None] = {}
         if tabled and curved and not any(requests[i].rise for i in curved):
@@ -150,7 +149,7 @@ class CurvedGenerator:
             answer = self._ask(body, replace(request, hip_height=_rounded(state)), step)
         answer.raised_from(state.hip_height)
         answers.append(answer)
-        return WalkerState(float(answer.curves[-1, 1]) - request.rise, step.duration)
+        return WalkerState(answer.end_height - request.rise, step.duration)
 
     def _ask(self, body: Body, request: StepRequest, step: PlannedStep) -> Answer:
         try:
@@ -185,10 +184,9 @@ class CurvedGenerator:
             stance, swing = flat.column(name).T
             curves[name][:, LEFT] = np.where(left, stance, swing)
             curves[name][:, RIGHT] = np.where(left, swing, stance)
+        curves["upper"][:], curves["pelvis"][:] = upper, flat.column("pelvis")
         turn = Turning(path.gaze, trunk * path.lean, path.bend * _walking(steps, flat))
-        curves["upper"][:], curves["pelvis"][:] = bent_upper(
-            body, upper, flat.column("pelvis"), turn, self._arms_middle(body)
-        )
+        bend_upper(body, curves["upper"], curves["pelvis"], turn, self._arms_middle(body))
         for name, values in curves.items():
             if not np.isfinite(values).all():
                 raise InvalidInputError(f"{name} of a step is not finite; its walk is no good")
@@ -232,7 +230,7 @@ class CurvedGenerator:
                 target.heading,
             )
             rise = float(target.position[1] - stance.position[1])
-            end = WalkerState(float(answer.curves[-1, 1]) - rise, step.duration)
+            end = WalkerState(answer.end_height - rise, step.duration)
             out.append(TabledStep(step.duration, end, reference, body, self._ground))
         return out
 
@@ -243,26 +241,31 @@ def _requests(
     steps: Sequence[PlannedStep],
     lengths: Float[np.ndarray, "S 2"],
     strides: int,
+    pace: float | None = None,
 ) -> list[StepRequest]:
-    """The underlying 2D steps, [KB92a] section 3: as long as the curves beside the footsteps."""
+    """The underlying 2D steps, [KB92a] section 3: as long as the curves beside the footsteps.
+
+    They take ``pace`` seconds each; None: the steps' own.
+    """
     least = SHORTEST * body.leg_length
     asked = np.round(np.maximum(lengths, least), 12).tolist()
     last = state.duration
     out = []
     for step, (previous, length) in zip(steps, asked, strict=True):
-        following = 0.0
+        stance, target, following = step.stance, step.target, 0.0
         if step.following is not None:
-            following = math.dist(step.following.middle, step.target.middle)
+            following = math.dist(step.following.middle, target.middle)
+        before = last if pace is None else None
         out.append(
             StepRequest(
-                side=step.stance.side,
+                side=stance.side,
                 previous_length=0.0 if step.kind == "start" else previous,
                 length=0.0 if step.kind == "stop" else length,
                 next_length=0.0 if following < 1e-9 else round(max(following, least), 12),
-                duration=round(step.duration, 12),
-                rise=round(float(step.target.position[1] - step.stance.position[1]), 12),
+                duration=round(step.duration, 12) if pace is None else pace,
+                rise=round(float(target.position[1] - stance.position[1]), 12),
                 kind=step.kind,
-                previous_duration=None if last is None else round(last, 12),
+                previous_duration=None if before is None else round(before, 12),
                 stride=stride_of(step) % strides,
             )
         )

@@ -244,17 +244,19 @@ class CycleOverlay:
     def _arms_of(
         self, ends: _Ends, rotations: Float[np.ndarray, "T J 4"]
     ) -> dict[str, Float[np.ndarray, "T 4"]]:
-        swing = ends.size(ARMS)[:, None] * np.ones(len(self._arms))
+        swing = np.tile(ends.size(ARMS), (len(self._arms), 1))
         hands = [name.endswith("Hand") for name in self._arms]
-        swing[:, hands] = np.minimum(swing[:, hands], 1.0)
-        moved = scaled(self._arm_mean, rotations[:, self._arm_index], swing)
+        swing[hands] = np.minimum(swing[hands], 1.0)
+        # joints first: samples stay next to each other
+        seen = np.take(rotations.transpose(1, 2, 0), self._arm_index, axis=0).transpose(0, 2, 1)
+        moved = scaled(self._arm_mean[:, None], seen, swing)
         bent = ELBOW * ends.faster - STRAIGHTER * ends.hanging
         out = {}
         for i, name in enumerate(self._arms):
             more = self._hang[i] * ends.hanging[:, None]
             if name.endswith("LowerArm"):
                 more = log(self._arm_mean[i]) * bent[:, None]
-            out[name] = multiply(exp(more), moved[:, i]) if more.any() else moved[:, i]
+            out[name] = multiply(exp(more), moved[i]) if more.any() else moved[i]
         return out
 
     def _to_hanging(self, name: str) -> Float[np.ndarray, "3"]:
@@ -277,10 +279,10 @@ class CycleOverlay:
 
 
 def scaled(
-    mean: Float[np.ndarray, "*j 4"],
-    rotations: Float[np.ndarray, "T *j 4"],
-    size: Float[np.ndarray, "T *j"],
-) -> Float[np.ndarray, "T *j 4"]:
+    mean: Float[np.ndarray, "*#n 4"],
+    rotations: Float[np.ndarray, "*n 4"],
+    size: Float[np.ndarray, "*#n"],
+) -> Float[np.ndarray, "*n 4"]:
     """Rotations whose excursions about their mean are ``size`` times as large."""
     away = log(multiply(inverse(mean), rotations))
     return multiply(mean, exp(size[..., None] * away))

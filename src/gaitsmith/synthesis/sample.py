@@ -91,9 +91,10 @@ def _local_rotations(
     last = None
     for i, name in enumerate(upper_joints(body)):
         here, vector = out[skeleton.index(name)], poses.upper[:, i]
-        if last is not None and np.array_equal(vector, last[0]):
+        # one frame tells nearly always
+        if last is not None and (vector[0] == last[0][0]).all() and np.array_equal(vector, last[0]):
             here[:] = last[1]  # the joints of a spine share its turn
-        elif vector.any():
+        elif vector[0].any() or vector.any():
             here[:] = exp(vector).T
             last = vector, here
         else:

@@ -53,14 +53,14 @@ class Turning:
     bend: Float[np.ndarray, "M"]
 
 
-def bent_upper(
+def bend_upper(
     body: Body,
     upper: Float[np.ndarray, "M U 3"],
     pelvis: Float[np.ndarray, "M 3"],
     turn: Turning,
     arms_middle: Float[np.ndarray, "U 3"] | None,
-) -> tuple[Float[np.ndarray, "M U 3"], Float[np.ndarray, "M 3"]]:
-    """``upper`` and ``pelvis`` as the turn has them.
+) -> None:
+    """Change ``upper`` and ``pelvis``, rotation vectors, to what the turn has them.
 
     The head turns to the gaze, the trunk leans; pelvis and head keep less of what they turn to and
     fro in every step; each arm swings about ``arms_middle`` as far as its side of the body
@@ -68,11 +68,9 @@ def bent_upper(
     """
     gaze, roll, bend = turn.gaze, turn.roll, turn.bend
     if not gaze.any() and not roll.any() and not bend.any():
-        return upper, pelvis
-    out = np.array(upper.transpose(1, 2, 0)).transpose(2, 0, 1)  # each column contiguous
+        return
     count = len(spine_names(body.spine_segments))
     steady = smoothstep(TIGHT * np.abs(bend))
-    pelvis = np.array(pelvis)
     less = STEADY_PELVIS * steady * pelvis[:, 1]  # the trunk above stays as it was
     head = pelvis[:, 1] + upper[:, : count + 2, 1].sum(-1)
     pelvis[:, 1] -= less
@@ -81,18 +79,20 @@ def bent_upper(
     turns[:, 1] = (SPINE * yaw + less) / count
     turns[:, 2] = -roll / count
     first = exp(turns)
-    same = count > 1 and bool((upper[:, 1:count] == upper[:, :1]).all())  # usual: shared evenly
-    for i in range(1 if same else count):
-        out[:, i] = log(multiply(first, exp(upper[:, i])))
-    if same:
-        out[:, 1:count] = out[:, :1]
+    before = None
+    for i in range(count):
+        here = upper[:, i]
+        if before is not None and np.array_equal(here, before):
+            here[:] = upper[:, i - 1]  # usual: a spine shares its turn evenly
+        else:
+            before = np.array(here)
+            here[:] = log(multiply(first, exp(here)))
     yaw = (1.0 - SPINE) * yaw - STEADY_HEAD * steady * head
     for i, share in ((count, NECK), (count + 1, HEAD)):
-        out[:, i] = log(turned_left(share / (NECK + HEAD) * yaw, exp(upper[:, i])))
+        upper[:, i] = log(turned_left(share / (NECK + HEAD) * yaw, exp(upper[:, i])))
     if arms_middle is not None and bend.any():
         names = upper_joints(body)
         for side, sign in zip(SIDES, SIDE_SIGN, strict=True):
             size = np.clip(1.0 - 0.5 * sign * body.shoulder_width * bend, *ARM_SWING)[:, None]
             for i in (names.index(f"{side}{part}") for part in ("UpperArm", "LowerArm")):
-                out[:, i] = arms_middle[i] + size * (upper[:, i] - arms_middle[i])
-    return out, pelvis
+                upper[:, i] = arms_middle[i] + size * (upper[:, i] - arms_middle[i])
