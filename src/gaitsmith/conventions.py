@@ -53,6 +53,8 @@ if TYPE_CHECKING:
 StepKind = Literal["start", "walk", "stop", "forward", "backward", "lateral", "turn", "stand"]
 #: The kinds that are no part of a walk.
 LOCAL_KINDS = ("forward", "backward", "lateral", "turn", "stand")
+#: Ways to lean into a curve: feet outside as people do, trunk inside as [KB92a], not at all.
+BANKINGS = ("body", "trunk", "none")
 LEFT, RIGHT = 0, 1
 SIDES = ("left", "right")
 #: +1 where +X is, -1 on the other side: multiplies lateral offsets.

@@ -16,11 +16,18 @@ GaitsmithWarning (a UserWarning)            done, but look at it
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+
+def nearest(name: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
+    """The one of ``known`` that was probably meant by ``name``, if any is near."""
+    from difflib import get_close_matches  # late: most runs are without mistakes
+
+    close = get_close_matches(name, list(known), n=1, cutoff=cutoff)
+    return close[0] if close else None
 
 
 class GaitsmithError(Exception):
@@ -36,8 +43,8 @@ class UnknownNameError(InvalidInputError):
 
     def __init__(self, what: str, name: str, known: Iterable[str]) -> None:
         self.name, self.known = name, sorted(known)
-        close = get_close_matches(name, self.known, n=1)
-        hint = f" Did you mean {close[0]!r}?" if close else ""
+        close = nearest(name, self.known)
+        hint = f" Did you mean {close!r}?" if close else ""
         super().__init__(f"unknown {what} {name!r}; known: {', '.join(self.known)}.{hint}")
 
 
@@ -47,8 +54,8 @@ class UnknownFormatError(InvalidInputError):
     def __init__(self, suffix: str, known: Iterable[str], *, verb: str = "write") -> None:
         self.suffix = suffix
         names = sorted(known)
-        close = get_close_matches(suffix, names, n=1)
-        hint = f" Did you mean {close[0]!r}?" if close else ""
+        close = nearest(suffix, names)
+        hint = f" Did you mean {close!r}?" if close else ""
         super().__init__(
             f"cannot {verb} {suffix!r} files; known suffixes: {', '.join(names)}.{hint}"
         )

@@ -12,12 +12,12 @@ from gaitsmith import io
 from gaitsmith._checks import one_of, positive
 from gaitsmith._version import __version__
 from gaitsmith.body.files import body_from_dict, body_to_dict
+from gaitsmith.conventions import BANKINGS
 from gaitsmith.errors import GaitsmithWarning, InvalidInputError
 from gaitsmith.ground import GROUNDS
 from gaitsmith.learning import body_of, gait_from
 from gaitsmith.motion.holding import held
 from gaitsmith.motion.performance import Performance
-from gaitsmith.plan.director import Manners, direct
 from gaitsmith.plan.follow import curve_share, follow
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.given import GivenSteps, plan_given
@@ -26,14 +26,11 @@ from gaitsmith.plan.paths import Path as WalkPath
 from gaitsmith.plan.rhythm import Rhythm
 from gaitsmith.plan.script import Script, Tempo
 from gaitsmith.plan.start import Start, start_of, start_to_dict
-from gaitsmith.plan.timeline import Timeline
 from gaitsmith.plan.where import read_where
-from gaitsmith.synthesis.curved import BANKINGS, CurvedGenerator
 from gaitsmith.synthesis.habits import own_pace, stance_of
-from gaitsmith.synthesis.mixed import MixedGenerator
 from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
-from gaitsmith.synthesis.stepping import LocalGenerator
+from gaitsmith.synthesis.straight import StraightGenerator
 from gaitsmith.synthesis.upper_body import Manner
 from gaitsmith.walks.generalize import LONG_STEP, check_step_length
 
@@ -46,7 +43,10 @@ if TYPE_CHECKING:
     from gaitsmith.motion.motion import Motion
     from gaitsmith.plan.lengths import Stance
     from gaitsmith.plan.script import Action
+    from gaitsmith.plan.timeline import Timeline
     from gaitsmith.plan.where import PathLike, StepsLike
+    from gaitsmith.synthesis.gaits import Gait
+    from gaitsmith.synthesis.step import StepGenerator
     from gaitsmith.walks.learned import LearnedGait
 
 #: Seconds of standing after a stop.
@@ -243,7 +243,10 @@ def walk(
         seed=seed,
     )
     outside = banking == "body"
+    plan: StepPlan | Timeline
     if isinstance(where, Script):
+        from gaitsmith.plan.director import Manners, direct  # late, as in _generator
+
         manners = Manners(who, pace, stance, ground, rhythm, outside, keep, paced)
         plan = direct(where.actions, manners, start if isinstance(start, Start) else None)
     else:
@@ -253,9 +256,8 @@ def walk(
         )
     if step_length is not None and isinstance(where, WalkPath) and isinstance(plan, StepPlan):
         _warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
-    generator = CurvedGenerator(style.walk, ground, style.overlay, banking=banking)
-    if isinstance(plan, Timeline):
-        generator = MixedGenerator(generator, LocalGenerator(style.walk, ground, style.overlay))
+    ahead = isinstance(where, WalkPath) and where.straight and not variation
+    generator = _generator(plan, style, ground, banking, ahead=ahead)
     prepared = prepare_walk(plan, generator, who, ground, rest=REST)
     motion = sample_walk(prepared, who, ground, fps=fps, recipe=recipe, begin=float(begin))
     return motion if until is None else stand_on(motion, until)
@@ -321,6 +323,26 @@ def _plan(
     if isinstance(where, GivenSteps):
         return plan_given(where, body=body, pace=pace, ground=ground)
     return where
+
+
+def _generator(
+    plan: StepPlan | Timeline, style: Gait, ground: Ground, banking: str, *, ahead: bool
+) -> StepGenerator:
+    """What walks ``plan``; ``ahead``: it leads straight ahead with even widths.
+
+    Imports are late: who walks straight ahead waits for nothing that bends or mixes walks.
+    """
+    if ahead:
+        return StraightGenerator(style.walk, ground, style.overlay)
+    from gaitsmith.synthesis.curved import CurvedGenerator
+
+    walking = CurvedGenerator(style.walk, ground, style.overlay, banking=banking)
+    if isinstance(plan, StepPlan):
+        return walking
+    from gaitsmith.synthesis.mixed import MixedGenerator
+    from gaitsmith.synthesis.stepping import LocalGenerator
+
+    return MixedGenerator(walking, LocalGenerator(style.walk, ground, style.overlay))
 
 
 def _warn_of_unusual(body: Body, step_length: float, speed: float) -> None:

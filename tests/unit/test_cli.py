@@ -395,8 +395,24 @@ from gaitsmith.cli.main import app
 heavy = {'numpy', 'scipy', 'rich', 'pydantic', 'PIL'} & set(sys.modules)
 from gaitsmith import pipeline
 pipeline.walk(distance=1)
-late = {'scipy', 'sklearn', 'PIL', 'shapely'} & set(sys.modules)
+late = {'scipy', 'sklearn', 'PIL', 'shapely', 'pydantic'} & set(sys.modules)
 print(sorted(heavy), sorted(late))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[] []"
+
+
+def test_a_walk_straight_ahead_waits_for_nothing_that_it_does_not_need():
+    """What bends, mixes and directs walks, and NumPy's slow corners, are imported when needed."""
+    code = """
+import sys
+from gaitsmith.cli.walk import facts_of
+from gaitsmith import pipeline
+facts_of(pipeline.walk(distance=3), [], [])
+ours = ('synthesis.curved', 'synthesis.mixed', 'synthesis.stepping', 'synthesis.attention',
+        'plan.director', 'body.masses', 'walks.learned', 'gait.learn', 'viz', 'scene', 'style')
+loaded = {f'gaitsmith.{name}' for name in ours} | {'numpy.ma', 'numpy.fft', 'numpy.polynomial'}
+print(sorted(loaded & set(sys.modules)))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import MISSING, fields, replace
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaitsmith.body.body import Body, Foot
 from gaitsmith.body.proportions import SHORTEST, TALLEST, body_from_height, height_from_leg
-from gaitsmith.errors import FileFormatError, InvalidInputError
+from gaitsmith.errors import FileFormatError, InvalidInputError, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -60,8 +59,8 @@ def _wrong_keys(data: Mapping[str, Any], kind: type[Body] | type[Foot], where: s
 def _unknown(where: str, key: str, known: Iterable[str]) -> str:
     """What to say about a key that is not known."""
     known = list(known)
-    close = get_close_matches(key, known, n=1, cutoff=0.4)
-    hint = f"did you mean {where + close[0]!r}?" if close else f"known: {', '.join(known)}"
+    close = nearest(key, known, cutoff=0.4)
+    hint = f"did you mean {where + close!r}?" if close else f"known: {', '.join(known)}"
     return f"{where}{key}: unknown key, {hint}"
 
 

@@ -127,8 +127,9 @@ def _head(
 
 def _toes(own: Float[np.ndarray, "n"], events: Float[np.ndarray, "4"]) -> Float[np.ndarray, "n 4"]:
     """Extension of the toes at phases of the foot's own stride; none while it is flat."""
-    keys = np.fft.rfft(np.array(_TOES)) / len(_TOES)
-    order = np.arange(len(keys))
+    count = len(_TOES)
+    order = np.arange(count // 2 + 1)  # a Fourier series, by hand: numpy.fft takes long to import
+    keys = np.exp(-2j * np.pi * np.outer(order, np.arange(count)) / count) @ _TOES / count
     weight = np.where((order == 0) | (order == len(keys) - 1), 1.0, 2.0)
     bend = (weight * keys * np.exp(2j * np.pi * order * own[:, None])).real.sum(-1)
     flat, heel_off = (events[1:3] - events[0]) % 1.0

@@ -15,9 +15,10 @@ import numpy as np
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
-#: Gauss-Legendre on [0, 1]: abscissas and weights.
-_NODES, _SHARES = np.polynomial.legendre.leggauss(4)
-_AT, _WEIGHT = 0.5 * (_NODES + 1.0), 0.5 * _SHARES
+#: Gauss-Legendre of four points on [0, 1]: abscissas and weights.
+_OUTER, _INNER = np.sqrt(3.0 / 7.0 + np.array([2.0, -2.0]) / 7.0 * np.sqrt(1.2))
+_AT = 0.5 + 0.5 * np.array([-_OUTER, -_INNER, _INNER, _OUTER])
+_WEIGHT = (18.0 + np.array([-1.0, 1.0, 1.0, -1.0]) * np.sqrt(30.0)) / 72.0
 #: Cells of the table that turns arc lengths to parameters.
 CELLS = 16
 

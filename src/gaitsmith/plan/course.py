@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.body.masses import center_of_mass, segments_of
 from gaitsmith.body.rig import skeleton_of
 from gaitsmith.conventions import GRAVITY, SIDE_SIGN, SIDES, leftward
 from gaitsmith.geometry.splines import PlaneCurves
@@ -50,6 +49,8 @@ def lean_lever(body: Body) -> float:
     Standing legs incline from the feet to the hips, what is above stays upright; the center of
     mass of the whole is then at its height times the tangent.
     """
+    from gaitsmith.body.masses import center_of_mass, segments_of  # late: of curves only
+
     skeleton = skeleton_of(body)
     rest = np.zeros((len(skeleton), 3))
     for joint, parent in enumerate(skeleton.parents):

@@ -13,14 +13,13 @@ from gaitsmith.errors import FileFormatError, InvalidInputError
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.given import GivenSteps
 from gaitsmith.plan.paths import Path, checked_points
-from gaitsmith.plan.script import Script, read_script
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from jaxtyping import Float
 
-    from gaitsmith.plan.script import Action
+    from gaitsmith.plan.script import Action, Script
 
     PathLike = str | FilePath | Path | Sequence[Sequence[float]] | Mapping[str, Any]
     StepsLike = str | FilePath | GivenSteps | StepPlan | Sequence[Mapping[str, Any]]
@@ -46,6 +45,8 @@ def read_where(
             + (" and ".join(given) if given else "none of them")
         )
     if do is not None:
+        from gaitsmith.plan.script import Script, read_script  # late: few walks follow one
+
         script = Script(tuple(read_script(do)))
         return script, {"do": script.text}
     if distance is not None:

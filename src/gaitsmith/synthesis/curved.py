@@ -17,7 +17,7 @@ import numpy as np
 from gaitsmith._checks import one_of
 from gaitsmith.contact import ReferenceStep, StepCurves
 from gaitsmith.contact.step_curves import CURVES, WIDTH, curve_of
-from gaitsmith.conventions import LEFT, RIGHT
+from gaitsmith.conventions import BANKINGS, LEFT, RIGHT
 from gaitsmith.errors import InfeasibleStepError, InvalidInputError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.plan.course import lean_lever
@@ -41,9 +41,6 @@ if TYPE_CHECKING:
     from gaitsmith.ground import Ground
     from gaitsmith.plan.footsteps import Footstep, PlannedStep
     from gaitsmith.synthesis.overlay import Overlayer
-
-#: Ways to lean into a curve: feet outside as people do, trunk inside as [KB92a], not at all.
-BANKINGS = ("body", "trunk", "none")
 
 
 class CurvedGenerator:

@@ -9,8 +9,7 @@ import numpy as np
 
 from gaitsmith.contact import StepCurves, plan_contact
 from gaitsmith.contact.step_curves import CURVES
-from gaitsmith.plan.timeline import Timeline
-from gaitsmith.synthesis.attention import Attention
+from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.synthesis.clock import Clock
 from gaitsmith.synthesis.join import join_all
 
@@ -22,7 +21,9 @@ if TYPE_CHECKING:
     from gaitsmith.body.body import Body
     from gaitsmith.contact import ContactPlan, Poses, ReferenceStep
     from gaitsmith.ground import Ground
-    from gaitsmith.plan.footsteps import PlannedStep, StepPlan
+    from gaitsmith.plan.footsteps import PlannedStep
+    from gaitsmith.plan.timeline import Timeline
+    from gaitsmith.synthesis.attention import Attention
 
 
 @dataclass(frozen=True)
@@ -169,8 +170,12 @@ def prepare_walk(
     references = join_all([p.reference for p in prepared], plan.kinds)
     if stands:
         references.append(_stand_still(references[-1]))
-    attention = Attention(body, plan.looks, plan.leans) if isinstance(plan, Timeline) else None
-    return PreparedWalk(plan, plan_contact(references, body, ground), clock, attention)
+    contact, attention = plan_contact(references, body, ground), None
+    if not isinstance(plan, StepPlan):
+        from gaitsmith.synthesis.attention import Attention  # late: of scripts only
+
+        attention = Attention(body, plan.looks, plan.leans)
+    return PreparedWalk(plan, contact, clock, attention)
 
 
 def _prepared(steps: list[PlannedStep], generator: StepGenerator, body: Body) -> list[PreparedStep]:
