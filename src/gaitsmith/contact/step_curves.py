@@ -100,14 +100,14 @@ class StepCurves:
         self, *, phase: Float[np.ndarray, "T"], **curves: Float[np.ndarray, "T ..."]
     ) -> None:
         """Copy, check and freeze the arrays."""
+        if curves.keys() != CURVES.keys():
+            raise TypeError(f"a step has the curves {', '.join(CURVES)}, got {', '.join(curves)}")
         n = len(phase)
         self.phase = frozen_array("phase", phase, (n,))
         parts = []
         for name, shape in CURVES.items():
             whole = tuple(None if size < 0 else size for size in shape)
-            parts.append(frozen_array(name, curves.pop(name), (n, *whole)).reshape(n, -1).T)
-        if curves:
-            raise TypeError(f"a step has no curves {sorted(curves)}")
+            parts.append(frozen_array(name, curves[name], (n, *whole)).reshape(n, -1).T)
         self.table = np.concatenate(parts)
         self.table.flags.writeable = False
         if self.phase[0] != 0.0 or self.phase[-1] != 1.0 or (np.diff(self.phase) <= 0.0).any():

@@ -8,6 +8,7 @@ Points are ``(x, z)``, headings as everywhere: 0 faces +Z, positive turns left, 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ import numpy as np
 
 from gaitsmith._checks import frozen_array, number, positive
 from gaitsmith.errors import InvalidInputError
+from gaitsmith.geometry.angles import sine_cosine
 from gaitsmith.geometry.curves import hermite
 from gaitsmith.geometry.splines import Spline, natural_spline
 
@@ -219,10 +221,13 @@ class Path:
         first, last = self._ends()
         if self.straight:
             return self.points[0] + along[:, None] * first
-        slope = np.stack([np.sin(self.heading), np.cos(self.heading)], axis=-1)
-        out = hermite(self.along, self.points, slope, along)
+        out = hermite(self.along, self.points, self._tangent, along)
         before, after = np.minimum(along, 0.0), np.maximum(along - self.length, 0.0)
         return out + before[:, None] * first + after[:, None] * last
+
+    @cached_property
+    def _tangent(self) -> Float[np.ndarray, "K 2"]:
+        return np.stack(sine_cosine(self.heading), axis=-1)
 
     def heading_at(self, along: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
         """Headings at arc lengths, unwrapped."""
