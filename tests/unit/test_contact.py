@@ -23,6 +23,7 @@ from gaitsmith.contact.reach import (
     raised_heel,
 )
 from gaitsmith.errors import InvalidInputError, LegReachError
+from gaitsmith.geometry.rotations import about, multiply
 from gaitsmith.ground import Flat
 
 BODY = person(1.75)
@@ -232,3 +233,64 @@ def test_a_landing_foot_is_put_where_the_ground_is():
     heel = ankle + turn(poses.foot[:, swing], [0.0, -foot.ankle_height, -foot.heel])
     ahead = np.array([np.sin(heading), 0.0, np.cos(heading)])
     np.testing.assert_allclose(heel[0], moved.target - foot.heel * ahead, atol=1e-9)
+
+
+def sole_at(step, phases):
+    """World positions of heel, ball and toe tip of the swinging foot."""
+    poses = plan_contact([step], BODY, GROUND).poses(np.asarray(phases))
+    swing, foot = 1 - step.stance, BODY.foot
+    side = 0.5 if swing == 0 else -0.5
+    hip = poses.center + turn(poses.pelvis, [side * BODY.hip_width, 0.0, 0.0])
+    knee = hip + turn(poses.thigh[:, swing], [0.0, -BODY.thigh, 0.0])
+    ankle = knee + turn(poses.shin[:, swing], [0.0, -BODY.shin, 0.0])
+    world = poses.foot[:, swing]
+    ball = ankle + turn(world, [0.0, -foot.ankle_height, foot.ball])
+    toes = multiply(world, about("x", -poses.bend[:, swing]))
+    return (
+        ankle + turn(world, [0.0, -foot.ankle_height, -foot.heel]),
+        ball,
+        ball + turn(toes, [0.0, 0.0, foot.toes]),
+    )
+
+
+def swung(step):
+    """0 up to toe-off, 1 at heel strike."""
+    return np.clip((step.curves.phase - step.toe_off) / (1.0 - step.toe_off), 0.0, 1.0)
+
+
+@pytest.mark.parametrize("curl", [0.0, 0.5])
+def test_the_toe_tip_leaves_the_ground_without_dipping_into_it(curl):
+    """Toes that begin to straighten at once, too: at toe-off they turn on as they rolled."""
+    step = one_step()
+    swing, off = 1 - step.stance, step.toe_off
+    bend = np.array(step.curves.bend)
+    bend[:, swing] *= 1.0 - curl * np.clip(20.0 * swung(step), 0.0, 1.0)
+    step = replace(step, curves=step.curves.with_(bend=bend))
+    tip = sole_at(step, off + np.array([0.0, 1e-6, *np.linspace(0.0, 0.2, 400)]))[2]
+    assert abs(tip[1, 2] - tip[0, 2]) < 2e-11  # ahead, meters in a millionth of a step
+    assert tip[2:, 1].min() > -1e-9
+
+
+def test_a_foot_that_comes_down_fast_does_not_dip_before_it_lands():
+    step = one_step()
+    swing, u = 1 - step.stance, swung(step)
+    pitch, ankle = np.array(step.curves.pitch), np.array(step.curves.ankle)
+    late = np.clip((0.98 - u) / 0.05, 0.0, 1.0) * np.clip((u - 0.4) / 0.2, 0.0, 1.0)
+    pitch[:, swing] -= 0.5 * late
+    ankle[:, swing, 1] += 0.06 * late
+    step = replace(step, curves=step.curves.with_(pitch=pitch, ankle=ankle))
+    points = sole_at(step, np.linspace(step.toe_off + 0.1, 1.0, 2000))
+    assert min(p[:, 1].min() for p in points) > -2e-4
+
+
+def test_a_flat_foot_whose_toes_would_hang_is_raised_as_well():
+    """A sole that is level lies flat, whatever its toes are to do next."""
+    stand = footholds(np.zeros((1, 3)), np.zeros(1), GROUND)
+    hip = np.array([[0.0, BODY.foot.ankle_height + 0.89 * LEG, 0.455 * LEG]])
+    pitch, meta = np.zeros(1), np.full(1, 0.13)
+    flat = np.linalg.norm(stand.ankle(BODY.foot, pitch, meta) - hip)
+    assert flat > (REAR_REACH + 1e-4) * LEG
+    extra = raised_heel(BODY.foot, stand, hip, pitch, meta, leg_length=LEG)
+    assert extra[0] > 0.0
+    raised = np.linalg.norm(stand.ankle(BODY.foot, pitch - extra, meta) - hip)
+    assert raised < (REAR_REACH + 1e-6) * LEG

@@ -37,8 +37,8 @@ LIMIT = 0.9997
 PER_STEP, SPREAD = 60, 0.12
 #: How much nearer the rear ankle may come by raising its heel, at toe-off, over leg length.
 REAR_SLACK = 0.14
-#: Largest extra rise of the rear heel, radians.
-LARGEST_RAISE = 0.8
+#: Largest extra rise of the rear heel, radians, and the least, with which a flat foot rolls.
+LARGEST_RAISE, LEAST_RAISE = 0.8, 1e-6
 #: Steepest that a rear foot is raised to, radians: on the tip of its toes; then hips come down.
 STEEPEST = 1.3
 
@@ -157,7 +157,8 @@ def raised_heel(
     def too_far(
         more: Float[np.ndarray, "k"], which: Bool[np.ndarray, "n"]
     ) -> Bool[np.ndarray, "k"]:
-        ankle = stand.at(which).ankle(foot, np.minimum(pitch[which] - more, -1e-9), meta[which])
+        raised = np.where(more > 0.0, np.minimum(pitch[which] - more, -1e-9), pitch[which])
+        ankle = stand.at(which).ankle(foot, raised, meta[which])
         return ((ankle - hip[which]) ** 2).sum(-1) > limit**2
 
     far = too_far(extra, np.ones(len(pitch), dtype=np.bool_))
@@ -174,7 +175,7 @@ def raised_heel(
         middle = 0.5 * (low + high)
         beyond = too_far(middle, far)
         low, high = np.where(beyond, middle, low), np.where(beyond, high, middle)
-    extra[far] = high
+    extra[far] = np.maximum(high, LEAST_RAISE)
     return np.minimum(extra, np.maximum(STEEPEST + pitch, 0.0))
 
 

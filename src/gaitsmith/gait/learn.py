@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 
 #: Samples of a learned stride.
 SAMPLES = 128
-#: Harmonics of the stride that the path of the hips seen from above keeps, about 7 Hz: markers
-#: shake by a millimeter, which would be jolts of 15 m/s^2.
-SWAY_HARMONICS = 8
+#: Harmonics of the stride that the path of the hips keeps, about 9 Hz: markers shake by a
+#: millimeter, which would be jolts of 15 m/s^2.
+HARMONICS = 10
 #: Radians that a stride's arms may be apart at its ends and still be closed within one stride.
 _ARMS_GAP = float(np.radians(25.0))
 #: Least double support after each heel strike, share of the stride: 4 % in all.
@@ -271,8 +271,7 @@ def _learned(
     feet = standing_feet(cycle)
     middle = 0.5 * (feet.place[0, 0] + feet.place[1, 0])
     center = cycle.center - [middle, feet.height, cycle.center[:, 2].mean()]
-    center[:, [0, 2]] = without_shaking(center[:, [0, 2]], cycle.strides)
-    cycle = cycle.with_(center=center)
+    cycle = cycle.with_(center=without_shaking(center, cycle.strides))
     ahead_right = float(feet.place[1, 1] - feet.place[0, 1])
     return Learned(
         cycle=cycle,
@@ -318,8 +317,8 @@ def _from_left(cycle: Cycle, first: int) -> Cycle:
 
 
 def without_shaking(path: Float[np.ndarray, "K c"], strides: int) -> Float[np.ndarray, "K c"]:
-    """A loop of ``strides`` strides without what is faster than bodies sway."""
-    harmonics = np.fft.rfft(path, axis=0)[: SWAY_HARMONICS * strides + 1]
+    """A loop of ``strides`` strides without what is faster than bodies move."""
+    harmonics = np.fft.rfft(path, axis=0)[: HARMONICS * strides + 1]
     return np.fft.irfft(harmonics, len(path), axis=0)
 
 
