@@ -12,7 +12,13 @@ from rigs import apart, bare, cut, cycle_angles, events_apart, every, in_a_mirro
 
 from gaitsmith.errors import InfeasibleError
 from gaitsmith.gait.events import FootPath, Stance, stances
-from gaitsmith.gait.learn import learn_cycle, standing_feet, symmetrized, walking_speed
+from gaitsmith.gait.learn import (
+    learn_cycle,
+    standing_feet,
+    symmetrized,
+    walking_speed,
+    without_shaking,
+)
 from gaitsmith.gait.loop import mirrored
 from gaitsmith.gait.person import person_of
 from gaitsmith.geometry.rotations import about, multiply
@@ -301,3 +307,12 @@ def test_stances_are_in_order():
     found = learned(Puppet().clip(5.0)).stances
     found = [s for s in found if s.cut != "start"]
     assert all(a.heel_strike < b.heel_strike for a, b in pairwise(found))
+
+
+def test_a_learned_way_of_the_hips_is_rid_of_shaking_and_keeps_its_sway():
+    """Markers shake by a millimeter from frame to frame; bodies do not."""
+    phase = np.arange(256) / 128.0
+    sway = 0.02 * np.sin(2.0 * np.pi * phase) + 0.004 * np.cos(6.0 * np.pi * phase)
+    shaking = 0.001 * np.cos(np.pi * np.arange(256))
+    out = without_shaking(np.stack([sway, sway + shaking], axis=-1), strides=2)
+    np.testing.assert_allclose(out, np.stack([sway, sway], axis=-1), atol=1e-12)
