@@ -36,8 +36,9 @@ if TYPE_CHECKING:
 CLEARANCE, CLEARANCE_RAMP = 0.010, 0.2
 #: So much of it at once, so that no curve dips below the ground between nodes.
 AT_ONCE, AT_ONCE_RAMP = 0.0004, 0.05
-#: Deepest that the sole's lowest point may be drawn between nodes, meters, before they are lifted.
-DIPS = 0.0001
+#: Deepest that the sole's lowest point may be drawn between nodes, meters, before they are lifted,
+#: and by how much of what is deeper.
+DIPS, LIFTED = 0.0001, 1.5
 #: Part of the swing over which a heel that was raised more for reach comes back.
 RAISE_FADES = 0.6
 #: Part of the swing over which its first speed is matched to the leaving foot's.
@@ -252,7 +253,13 @@ def _swing(
     swing = np.array([*ankle.T, pitch, bend])
     swing += _leaving_speed(walk, side, node, first, swing.T).T
     ankle, (pitch, bend) = swing[:3].T, swing[3:]
-    ankle[:, 1] += _clearance(body, ground, ankle, pitch, bend, heading, at, walk.at[node])
+    heights = _heights(body, ground, ankle, pitch, bend, heading)
+    lift = _clearance(heights, at)
+    landed = _heights(
+        body, ground, end, land_pitch, curves["bend"][strike], walk.target_heading[steps]
+    )
+    dips = _dips(walk.at[node], heights + lift[:, None], first, steps + 1.0, landed)
+    ankle[:, 1] += lift + dips * (at > 0.0)
     reach = [
         np.repeat(lengths(hip[which] - foot_at), count)
         for which, foot_at in ((node[first], ankle[first]), (strike, end))
@@ -302,20 +309,15 @@ def _leaving_speed(
     return (np.repeat((change * span[:, None]).T, count, axis=1) * shape).T
 
 
-def _clearance(
+def _heights(
     body: Body,
     ground: Ground,
     ankle: Float[np.ndarray, "n 3"],
     pitch: Float[np.ndarray, "n"],
     bend: Float[np.ndarray, "n"],
     heading: Float[np.ndarray, "n"],
-    u: Float[np.ndarray, "n"],
-    at: Float[np.ndarray, "n"],
-) -> Float[np.ndarray, "n"]:
-    """How far the swinging foot must be lifted, meters, so that its sole clears the ground.
-
-    ``u`` is the phase of the swing, ``at`` that of the walk.
-    """
+) -> Float[np.ndarray, "n 3"]:
+    """Heel, ball and toe tip of a swinging foot above the ground, meters."""
     sole = sole_in_air(body.foot, ankle[:, 1], pitch, bend)
     sine, cosine = sine_cosine(heading)
     points = (sole.heel, sole.ball, sole.toe)
@@ -323,23 +325,43 @@ def _clearance(
     for i, point in enumerate(points):
         x, z = ankle[:, 0] + point[:, 0] * sine, ankle[:, 2] + point[:, 0] * cosine
         height[:, i] = point[:, 1] - ground.height(x, z)
+    return height
+
+
+def _clearance(
+    height: Float[np.ndarray, "n 3"], u: Float[np.ndarray, "n"]
+) -> Float[np.ndarray, "n"]:
+    """How far a swinging foot must be lifted, meters, so that its sole clears the ground.
+
+    ``u`` is the phase of the swing.
+    """
     want = CLEARANCE * smoothstep(u / CLEARANCE_RAMP) * smoothstep((1.0 - u) / CLEARANCE_RAMP)
     want = want + AT_ONCE * smoothstep(u / AT_ONCE_RAMP) * smoothstep((1.0 - u) / AT_ONCE_RAMP)
     short = want - height.min(-1)
     soft = 0.3 * want + 1e-9  # a soft maximum: no corner where the lift begins
-    lift = 0.5 * (short + np.sqrt(short**2 + soft**2))
-    return lift + _dips(at, height + lift[:, None]) * (u > 0.0)
+    return 0.5 * (short + np.sqrt(short**2 + soft**2))
 
 
-def _dips(at: Float[np.ndarray, "n"], height: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n"]:
+def _dips(
+    at: Float[np.ndarray, "n"],
+    height: Float[np.ndarray, "n 3"],
+    first: Int[np.ndarray, "k"],
+    strike: Float[np.ndarray, "k"],
+    landed: Float[np.ndarray, "k 3"],
+) -> Float[np.ndarray, "n"]:
     """By how much nodes are too low for curves through them to stay above 0, meters.
 
     A foot that comes down fast would overshoot between the last two nodes before it lands.
+    ``first`` are the nodes at which swings begin; they land at ``strike`` as high as ``landed``.
     """
-    if len(at) < 3:
-        return np.zeros(len(at))
-    between = 0.5 * (at[1:] + at[:-1])
-    lowest = hermite(at, height, parabola_slopes(at, height), between).min(-1)
-    dip = np.maximum(-DIPS - lowest, 0.0)
+    last = np.append(first[1:], len(at))
+    lands = at[last - 1] < strike - 1e-9  # the end of the walk is a node of the swing already
+    own = np.insert(np.ones(len(at), dtype=np.bool_), last[lands], values=False)
+    at = np.insert(at, last[lands], strike[lands])
+    height = np.insert(height, last[lands], landed[lands], axis=0)
+    slopes = parabola_slopes(at, height)
+    between = [at[:-1] + share * np.diff(at) for share in (0.25, 0.5, 0.75)]
+    lowest = np.min([hermite(at, height, slopes, here).min(-1) for here in between], axis=0)
+    dip = LIFTED * np.maximum(-DIPS - lowest, 0.0)
     dip = np.where(np.diff(at) < FINEST * (1.0 + 1e-9), dip, 0.0)  # not from one swing to the next
-    return np.maximum(np.append(dip, 0.0), np.append(0.0, dip))
+    return np.maximum(np.append(dip, 0.0), np.append(0.0, dip))[own]
