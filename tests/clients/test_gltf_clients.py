@@ -68,11 +68,24 @@ def motions() -> dict[str, Motion]:
     }
 
 
+def scene() -> gaitsmith.Performance:
+    """Three who differ in size and gait, one with a name beyond ASCII."""
+    walkers = (
+        gaitsmith.Walker("ann", body=1.2, distance=2.0),
+        gaitsmith.Walker("ben-1", body=2.0, do="walk to 4,2", start=gaitsmith.Start((3, 0))),
+        gaitsmith.Walker("zoë", gait="winter", distance=1.0, start=gaitsmith.Start((6, 0))),
+    )
+    return gaitsmith.perform(gaitsmith.Scene(walkers), fps=30.0)
+
+
 def test_khronos_validator_finds_nothing(tmp_path):
     paths = []
     for name, motion in motions().items():
         paths.append(tmp_path / f"{name}.glb")
         write_glb(motion, paths[-1], neutral=name == "walking")
+    for neutral in (False, True):
+        paths.append(tmp_path / f"scene-{neutral}.glb")
+        write_glb(scene(), paths[-1], neutral=neutral)
     reports = node("validate.mjs", *paths, package="gltf-validator")
     assert len(reports) == len(paths)
     for path, report in reports.items():
@@ -97,3 +110,16 @@ def test_three_js_plays_what_was_written(height, tmp_path):
         for vertices, mine in zip(pose["vertices"], glb.skinned(frame).values(), strict=True):
             pick = mine[[0, len(mine) // 2, -1]]
             np.testing.assert_allclose(vertices, pick, atol=1e-4)
+
+
+def test_three_js_plays_everybody_of_a_scene(tmp_path):
+    """Every joint of everybody by its name, to 1e-5 m."""
+    made = scene()
+    path = gaitsmith.save(made, tmp_path / "scene.glb")
+    frames = [0, 25, len(made.motions[0]) - 1]
+    shown = node("three_pose.mjs", path, *(f / made.fps for f in frames), package="three")
+    for frame, pose in zip(frames, shown, strict=True):
+        for name, motion in made:
+            expected = joint_positions(motion)[frame]
+            for joint, at in zip(motion.skeleton.names, expected, strict=True):
+                np.testing.assert_allclose(pose["joints"][f"{name}_{joint}"], at, atol=1e-5)

@@ -23,7 +23,7 @@ const frames = times.map((time) => {
   mixer.setTime(Number(time));
   gltf.scene.updateMatrixWorld(true);
   const joints = {};
-  for (const bone of skinned[0].skeleton.bones) {
+  for (const bone of new Set(skinned.flatMap((mesh) => mesh.skeleton.bones))) {
     joints[bone.name] = bone.getWorldPosition(new THREE.Vector3()).toArray();
   }
   const vertices = skinned.map((mesh) => {
