@@ -32,11 +32,15 @@ FENCE = re.compile(
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block of a page: its language, its first line's number, its text."""
+    """A fenced block of a page: its language, its first line's number, its text.
+
+    ``title`` is the file that a reader saves it as.
+    """
 
     language: str
     line: int
     text: str
+    title: str | None = None
 
 
 def blocks(page: Path) -> list[Block]:
@@ -46,8 +50,16 @@ def blocks(page: Path) -> list[Block]:
         language = re.match(r"\s*\{?\s*\.?([\w+-]*)", match["info"])[1]
         line = text.count("\n", 0, match.start("body")) + 1
         body = re.sub(rf"^{match['indent']}", "", match["body"], flags=re.MULTILINE)
-        found.append(Block(language, line, body))
+        title = re.search(r'title="([^"]+)"', match["info"])
+        found.append(Block(language, line, body, title[1] if title else None))
     return found
+
+
+def save_files(page: Path, folder: Path) -> None:
+    """What a reader of ``page`` saves."""
+    for block in blocks(page):
+        if block.title is not None:
+            (folder / block.title).write_text(block.text, encoding="utf-8")
 
 
 def ids(page: Path) -> str:
@@ -76,6 +88,7 @@ def test_every_block_says_what_it_is(page):
 def test_the_python_of_a_page_runs_as_printed(page, tmp_path, monkeypatch):
     """One namespace a page, from the top, as a reader would type it."""
     monkeypatch.chdir(tmp_path)
+    save_files(page, tmp_path)
     namespace: dict[str, object] = {"__name__": "__tutorial__"}
     for block in blocks(page):
         if block.language == "python":
@@ -86,6 +99,7 @@ def test_the_python_of_a_page_runs_as_printed(page, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("page", named(SHELL), ids=ids)
 def test_the_commands_of_a_page_run_as_printed(page, tmp_path):
+    save_files(page, tmp_path)
     lines = [
         line
         for block in blocks(page)
@@ -155,6 +169,16 @@ def test_the_reference_names_every_suffix():
     known = suffixes()
     assert known
     assert not [suffix for suffix in known if f"| `{suffix}` |" not in page]
+
+
+def test_the_reference_has_every_key_of_a_scene():
+    from gaitsmith.scene import schema
+
+    page = (DOCS / "reference" / "scenes.md").read_text(encoding="utf-8")
+    tables = [getattr(schema, name) for name in vars(schema) if name.endswith("Table")]
+    keys = {key for table in tables for key in table.model_fields}
+    assert len(keys) > 30
+    assert not sorted(k for k in keys if f"`{k}" not in page and f"`[[{k}]]`" not in page)
 
 
 @pytest.mark.slow
