@@ -18,13 +18,15 @@ from gaitsmith.errors import (
 )
 from gaitsmith.gait.cycle import EVENTS
 from gaitsmith.motion.motion import Markers, Motion
+from gaitsmith.plan.manners import gait_of
 from gaitsmith.synthesis.gaits import GAITS, Gait, learned
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from gaitsmith.body.body import Body
     from gaitsmith.gait.events import Stance
+    from gaitsmith.plan.script import Action
     from gaitsmith.synthesis.upper_body import Manner
     from gaitsmith.walks.learned import LearnedGait
 
@@ -160,6 +162,27 @@ def gait_from(
         else:
             raise UnknownNameError("gait", text, GAITS)
     return learned(spec, manner), gait_to_dict(spec)
+
+
+def gaits_named(
+    actions: Iterable[Action],
+    gaits: Mapping[str, str | Path | LearnedGait | dict[str, Any]],
+    manner: Manner | None = None,
+) -> dict[str, tuple[Gait, str | dict[str, Any]]]:
+    """The gaits that ``actions`` name, as :func:`gait_from` gives them.
+
+    ``gaits`` says what the names mean; a name that is not in it is what ``--gait`` takes.
+    """
+    found: dict[str, tuple[Gait, str | dict[str, Any]]] = {}
+    for i, action in enumerate(actions, start=1):
+        name = gait_of(getattr(action, "tempo", None))
+        if name is None or name in found:
+            continue
+        try:
+            found[name] = gait_from(gaits.get(name, name), manner)
+        except InvalidInputError as error:
+            raise InvalidInputError(f"action {i}: {error}") from None
+    return found
 
 
 def body_of(spec: str | float | Path | Body) -> Body:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import warnings
 from dataclasses import asdict, replace
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,7 @@ from gaitsmith.body.files import body_from_dict, body_to_dict
 from gaitsmith.conventions import BANKINGS
 from gaitsmith.errors import GaitsmithWarning, InvalidInputError
 from gaitsmith.ground import GROUNDS
-from gaitsmith.learning import body_of, gait_from
+from gaitsmith.learning import body_of, gait_from, gaits_named
 from gaitsmith.motion.holding import held
 from gaitsmith.motion.performance import Performance
 from gaitsmith.plan.follow import curve_share, follow
@@ -35,7 +36,7 @@ from gaitsmith.synthesis.upper_body import Manner
 from gaitsmith.walks.generalize import LONG_STEP, check_step_length
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
     from gaitsmith.body.body import Body
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
     from gaitsmith.plan.script import Action
     from gaitsmith.plan.timeline import Timeline
     from gaitsmith.plan.where import PathLike, StepsLike
-    from gaitsmith.synthesis.gaits import Gait
+    from gaitsmith.synthesis.gaits import Gait, Habits
     from gaitsmith.synthesis.step import StepGenerator
     from gaitsmith.walks.learned import LearnedGait
 
@@ -82,6 +83,7 @@ def walk(
     path: PathLike | None = None,
     steps: StepsLike | None = None,
     do: str | Sequence[str | Action] | None = None,
+    gaits: Mapping[str, str | Path | LearnedGait | dict[str, Any]] | None = None,
     body: str | float | Path | Body = 1.75,
     gait: str | Path | LearnedGait | dict[str, Any] = "neutral",
     step_length: float | None = None,
@@ -118,6 +120,10 @@ def walk(
         A script of actions, ``"walk to 0,3; turn left 90; step back 0.3"``, or a list of them
         (:mod:`gaitsmith.plan.script`), from standing at 0,0 facing 0 or at ``start``; ``stop``
         does not apply.
+    gaits
+        Gaits that actions name (``"walk to 0,3 gait limp"``), each as ``gait``; built-in ones
+        need not be told. Walks in different gaits meet in standing; feet are set as in the
+        person's own gait.
     body
         Height in meters, name of a built-in body, ``.toml`` file of measures, a clip (whose
         rig has the lengths), or a Body.
@@ -203,15 +209,18 @@ def walk(
     stance = stance_of(who, step_width, toe_out, style.habits)
     if step_length is not None:
         check_step_length(who, positive("step_length", step_length, "meters"))
-    usual = None if style.habits is None else own_pace(who, style.habits)
 
-    def paced(tempo: Tempo) -> Pace:
-        pace = choose_pace(who, **vars(tempo), usual=usual)
+    def paced(tempo: Tempo, habits: Habits | None = style.habits) -> Pace:
+        usual = None if habits is None else own_pace(who, habits)
+        pace = choose_pace(who, **tempo.said, usual=usual)
         check_step_length(who, pace.step_length)
         _warn_of_unusual(who, pace.step_length, pace.speed)
         return pace
 
-    pace = paced(Tempo(speed, step_length, cadence))
+    asked = Tempo(speed, step_length, cadence)
+    pace = paced(asked)
+    actions = where.actions if isinstance(where, Script) else ()
+    others = gaits_named(actions, gaits or {}, manner)
     recipe = {
         "gaitsmith": __version__,
         "walk": {
@@ -229,25 +238,39 @@ def walk(
             **({} if distance is not None else {"banking": banking}),
             **({"variation": variation} if variation else {}),
             **({"begin": float(begin)} if begin else {}),
+            **({"gaits": {n: told for n, (_, told) in others.items()}} if others else {}),
             "fps": fps,
             "seed": seed,
         },
     }
     ground = GROUNDS["flat"]()
     keep = cadence is not None
-    own = style.habits
-    rhythm = Rhythm(
-        lengths=own.lengths if own and step_length is None else (1.0, 1.0),
-        durations=own.durations if own and cadence is None else (1.0, 1.0),
-        variation=variation,
-        seed=seed,
-    )
+
+    def rhythm_of(own: Habits | None) -> Rhythm:
+        return Rhythm(
+            lengths=own.lengths if own and step_length is None else (1.0, 1.0),
+            durations=own.durations if own and cadence is None else (1.0, 1.0),
+            variation=variation,
+            seed=seed,
+        )
+
+    rhythm = rhythm_of(style.habits)
     outside = banking == "body"
     plan: StepPlan | Timeline
     if isinstance(where, Script):
         from gaitsmith.plan.director import Manners, direct  # late, as in _generator
 
         manners = Manners(who, pace, stance, ground, rhythm, outside, keep, paced)
+        in_others = {
+            name: replace(
+                manners,
+                pace=paced(asked, other.habits),
+                rhythm=rhythm_of(other.habits),
+                paced=partial(paced, habits=other.habits),
+            )
+            for name, (other, _) in others.items()
+        }
+        manners = replace(manners, gaits=in_others)
         plan = direct(where.actions, manners, start if isinstance(start, Start) else None)
     else:
         begins = "stand" if isinstance(start, Start) else start
@@ -257,7 +280,8 @@ def walk(
     if step_length is not None and isinstance(where, WalkPath) and isinstance(plan, StepPlan):
         _warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
     ahead = isinstance(where, WalkPath) and where.straight and not variation
-    generator = _generator(plan, style, ground, banking, ahead=ahead)
+    gaits_of = {name: other for name, (other, _) in others.items()}
+    generator = _generator(plan, style, ground, banking, ahead=ahead, gaits=gaits_of)
     prepared = prepare_walk(plan, generator, who, ground, rest=REST)
     motion = sample_walk(prepared, who, ground, fps=fps, recipe=recipe, begin=float(begin))
     return motion if until is None else stand_on(motion, until)
@@ -326,9 +350,17 @@ def _plan(
 
 
 def _generator(
-    plan: StepPlan | Timeline, style: Gait, ground: Ground, banking: str, *, ahead: bool
+    plan: StepPlan | Timeline,
+    style: Gait,
+    ground: Ground,
+    banking: str,
+    *,
+    ahead: bool,
+    gaits: Mapping[str, Gait],
 ) -> StepGenerator:
     """What walks ``plan``; ``ahead``: it leads straight ahead with even widths.
+
+    ``gaits`` are those that actions name.
 
     Imports are late: who walks straight ahead waits for nothing that bends or mixes walks.
     """
@@ -342,7 +374,11 @@ def _generator(
     from gaitsmith.synthesis.mixed import MixedGenerator
     from gaitsmith.synthesis.stepping import LocalGenerator
 
-    return MixedGenerator(walking, LocalGenerator(style.walk, ground, style.overlay))
+    others = {
+        name: CurvedGenerator(gait.walk, ground, gait.overlay, banking=banking)
+        for name, gait in gaits.items()
+    }
+    return MixedGenerator(walking, LocalGenerator(style.walk, ground, style.overlay), others)
 
 
 def _warn_of_unusual(body: Body, step_length: float, speed: float) -> None:

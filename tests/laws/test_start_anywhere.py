@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from judge import broken
@@ -176,6 +178,63 @@ def test_the_pace_changes_on_the_way_without_a_stop(script):
         np.testing.assert_allclose(np.diff(time)[2:][fast], 0.5, atol=1e-9)
         change = (steps > 0.5 + 1e-9) & (steps < 0.75 - 1e-9) & (place[3:, 1] < 7.0)
         assert 1 <= change.sum() <= 4
+
+
+def jolt(motion):
+    """Largest change of the hips' velocity, m/s2."""
+    change = np.diff(motion.root_position, 2, axis=0) * motion.fps**2
+    return np.linalg.norm(change, axis=-1).max()
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        "walk to 0,3 gait winter; walk to 0,6; turn left 90; walk to 3,6 gait winter",
+        "step left 0.3; follow 0.5,2 0,4 gait winter speed 0.9; be at 1,5 facing 30 gait winter",
+    ],
+)
+def test_actions_walk_in_gaits_of_their_own_without_a_hitch(script):
+    """Every promise, and hips that change their velocity no more than within one gait."""
+    motion = walk(do=script, fps=120.0)
+    assert not broken(motion)
+    plain = script.replace(" gait winter", "")
+    pure = [walk(do=plain, gait=gait, fps=120.0) for gait in ("neutral", "winter")]
+    assert jolt(motion) < 1.1 * max(map(jolt, pure))
+    again = regenerate(motion)
+    np.testing.assert_array_equal(again.rotations, motion.rotations)
+
+
+def test_an_action_in_another_gait_is_that_gait():
+    """But for the stance, which stays the person's own."""
+    own = walk(distance=1.0, fps=24.0)
+    width = json.loads(own.labels.recipe)["walk"]["step_width"]
+    other = walk(distance=3.0, gait="winter", step_width=width, toe_out=np.radians(6.0), fps=24.0)
+    script = walk(do="walk to 0,3 gait winter", step_width=width, toe_out=np.radians(6.0), fps=24.0)
+    named = walk(
+        do="walk to 0,3 gait w",
+        gaits={"w": "winter"},
+        step_width=width,
+        toe_out=np.radians(6.0),
+        fps=24.0,
+    )
+    np.testing.assert_allclose(script.root_position, other.root_position, atol=1e-9)
+    np.testing.assert_array_equal(named.rotations, script.rotations)
+    assert np.abs(script.rotations - walk(do="walk to 0,3", fps=24.0).rotations).max() > 0.05
+
+
+def test_walks_in_two_gaits_meet_in_standing():
+    both = walk(do="walk to 0,3 gait winter; walk to 0,6 gait winter", fps=30.0)
+    change = walk(do="walk to 0,3 gait winter; walk to 0,6", fps=30.0)
+    assert (np.diff(both.labels.footstep_time[1:]) < 1.0).all()
+    feet = change.labels.footstep_position[:, 2]
+    assert (np.abs(feet - 3.0) < 1e-9).sum() == 2, "both feet at the point where the gait changes"
+
+
+def test_a_gait_that_nobody_knows_names_the_action():
+    with pytest.raises(InvalidInputError, match=r"action 2: unknown gait 'wintr'.*'winter'"):
+        walk(do="stand 1; walk to 0,3 gait wintr")
+    with pytest.raises(InvalidInputError, match="a name without blanks"):
+        Tempo(gait="a b")
 
 
 def test_a_tempo_that_nobody_walks_names_the_action():

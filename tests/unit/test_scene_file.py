@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 
+import gaitsmith
 from gaitsmith import FileFormatError, read_scene
 from gaitsmith.body.presets import body_from
 from gaitsmith.plan.given import GivenSteps
@@ -14,6 +15,7 @@ from gaitsmith.plan.script import BeAt, Face, Follow, Lean, LookAt, Stand, Step,
 from gaitsmith.plan.start import Start
 from gaitsmith.plan.surroundings import Bar, Obstacle, Post
 from gaitsmith.scene.lines import line_at, lines_of
+from gaitsmith.walks.learned import write_gait
 
 TEMPO = Tempo(step_length=0.4)
 
@@ -126,6 +128,7 @@ def test_one_walker_may_stand_at_the_top_of_the_file(read):
             "be_at = [0, 0]\nfeet = {left = [0.1, 0, 0], right = [-0.1, 0, 0]}\nspeed = 1",
             BeAt((0.0, 0.0), None, ((0.1, 0.0, 0.0), (-0.1, 0.0, 0.0)), Tempo(1.0)),
         ),
+        ('walk_to = [0, 3]\ngait = "winter"', WalkTo((0.0, 3.0), Tempo(gait="winter"))),
         ('action = "walk to 0,3"\nspeed = 1', WalkTo((0.0, 3.0), Tempo(1.0))),
     ],
 )
@@ -208,6 +211,10 @@ def test_all_that_is_wrong_is_said_at_once_with_its_place(read):
         ("[[do]]\nface = 1\nstand = 1", "got face and stand"),
         ("[[do]]\nstand = 1\nspeed = 1", "speed is of walk_to, follow and be_at, not of stand"),
         ("[[do]]\nwalk_to = [1, 2]\nfacing = 1", "facing is of be_at, not of walk_to"),
+        ('[[do]]\nwalk_to = [1, 2]\ngait = "wintr"', "do 1, gait: unknown gait 'wintr'"),
+        ('[[do]]\nwalk_to = [1, 2]\ngait = "my gait"', "gait: must be a name or a file without"),
+        ('do = "stand 1; walk to 0,3 gait wintr"', "do: action 2: unknown gait 'wintr'"),
+        ('do = "walk to 0,3 gait gone.gait.json"', "gone.gait.json: no such file"),
         ("[[do]]\nlook_ahead = false", "look_ahead can only be true"),
         ('[[do]]\nturn = "up 3"', "line 1: do 1: action 1 'turn up 3': unknown way 'up'"),
         ('[[do]]\naction = "stand 1; stand 2"', "one table is one action"),
@@ -243,6 +250,18 @@ def test_files_are_found_beside_the_scene(read, tmp_path, monkeypatch):
     (tmp_path / "else").mkdir()
     monkeypatch.chdir(tmp_path / "else")
     assert read('path = "way.csv"').walkers[0].path.length == 2.0
+
+
+def test_gaits_of_actions_are_read_from_files(read, tmp_path):
+    """A name with a suffix is a file beside the scene; what it holds goes along."""
+    learned = gaitsmith.learn(gaitsmith.walk(distance=6.0, body=1.6, fps=60.0), name="own")
+    write_gait(learned, tmp_path / "own.gait.json")
+    scene = read('do = "walk to 0,1.5 gait own.gait.json"')
+    assert scene.walkers[0].gaits["own.gait.json"]["name"] == "own"
+    motion = gaitsmith.perform(scene, fps=20.0).motions[0]
+    (tmp_path / "own.gait.json").unlink()
+    again = gaitsmith.regenerate(motion)
+    np.testing.assert_array_equal(again.rotations, motion.rotations)
 
 
 def test_lines_of_tables_and_keys():

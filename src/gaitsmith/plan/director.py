@@ -12,7 +12,7 @@ from gaitsmith.errors import InfeasibleError
 from gaitsmith.plan.follow import follow
 from gaitsmith.plan.footsteps import Footstep, LocalStep, PlannedStep
 from gaitsmith.plan.legs import Legs, legs_of
-from gaitsmith.plan.pace import choose_pace
+from gaitsmith.plan.manners import Manners, gait_of
 from gaitsmith.plan.script import (
     Action,
     BeAt,
@@ -31,17 +31,13 @@ from gaitsmith.plan.timeline import Timeline
 from gaitsmith.plan.ways import NO_WAY, from_feet, goals_of, leads, on_floor, path_through, wrapped
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from jaxtyping import Float
 
-    from gaitsmith.body.body import Body
     from gaitsmith.conventions import StepKind
-    from gaitsmith.ground import Ground
-    from gaitsmith.plan.lengths import Stance
     from gaitsmith.plan.pace import Pace
     from gaitsmith.plan.paths import Path
-    from gaitsmith.plan.rhythm import Rhythm
     from gaitsmith.plan.script import Tempo
 
     Way = list[Float[np.ndarray, "2"]]
@@ -74,30 +70,6 @@ _KINDS: dict[str, StepKind] = {
     "left": "lateral",
     "right": "lateral",
 }
-
-
-@dataclass(frozen=True)
-class Manners:
-    """How the director's person walks: as :func:`~gaitsmith.plan.follow.follow` is told."""
-
-    body: Body
-    pace: Pace
-    stance: Stance
-    ground: Ground
-    rhythm: Rhythm | None = None
-    outside: bool = True
-    keep_cadence: bool = False
-    paced: Callable[[Tempo], Pace] | None = None
-
-    def pace_at(self, tempo: Tempo | None) -> Pace:
-        """The pace of an action."""
-        if tempo is None:
-            return self.pace
-        return choose_pace(self.body, **vars(tempo)) if self.paced is None else self.paced(tempo)
-
-    def keeps(self, tempo: Tempo | None) -> bool:
-        """Whether an action slows down in curves by shorter steps alone."""
-        return self.keep_cadence if tempo is None else tempo.cadence is not None
 
 
 def direct(actions: Sequence[Action], manners: Manners, start: Start | None = None) -> Timeline:
@@ -205,7 +177,8 @@ class _Director:
             if np.linalg.norm(gap) < NO_WAY and len(way) == 1:
                 continue
             towards = float(np.arctan2(*gap))
-            if heading is not None and abs(wrapped(towards - heading)) > LARGEST_CORNER:
+            turns = heading is not None and abs(wrapped(towards - heading)) > LARGEST_CORNER
+            if run and (turns or gait_of(action.tempo) != gait_of(run[-1][2])):
                 self._walk(run)
                 run = []
             run.append((way, isinstance(action, Follow), action.tempo))
@@ -224,11 +197,12 @@ class _Director:
             path = path_through(self.middle, ways)
         if self.planned and self.planned[-1].kind not in ("stop", "stand"):
             self._stand(BEFORE_WALK)
-        manners = self.manners
+        gait = gait_of(run[0][2])
+        manners = self.manners.in_gait(gait)
         lead = leads(self.feet, path)
         first = RIGHT if lead[RIGHT] <= lead[LEFT] + 0.01 else LEFT
         tempi = [tempo for *_, tempo in run]
-        pace, legs = self._legs(path, [way[-1] for way, _ in ways], tempi)
+        pace, legs = _legs(path, [way[-1] for way, _ in ways], [manners.pace_at(t) for t in tempi])
         plan = follow(
             path,
             pace=pace,
@@ -243,21 +217,12 @@ class _Director:
         )
         plan = from_feet(plan, self.feet, path, self.facing)
         for step in plan.steps():
-            self._add(step)
+            self._add(replace(step, gait=gait))
         assert plan.path is not None
         self.paths.append(plan.path)
         self.facing = self.gaze = float(plan.direction[-1])
         for foot in plan.footsteps()[-2:]:
             self.feet[foot.side] = foot
-
-    def _legs(
-        self, path: Path, ends: Way, tempi: Sequence[Tempo | None]
-    ) -> tuple[Pace, Legs | None]:
-        """The pace of the longest steps, and where others are taken."""
-        paces = [self.manners.pace_at(tempo) for tempo in tempi]
-        if all(pace == paces[0] for pace in paces):
-            return paces[0], None
-        return legs_of(path, ends, paces)
 
     # ------------------------------------------------------------------ local steps
 
@@ -447,3 +412,13 @@ class _Director:
     def middle(self) -> Float[np.ndarray, "2"]:
         """x, z half way between the feet."""
         return 0.5 * (self.feet[LEFT].position + self.feet[RIGHT].position)[[0, 2]]
+
+
+def _legs(path: Path, ends: Way, paces: Sequence[Pace]) -> tuple[Pace, Legs | None]:
+    """The pace of the longest steps, and where others are taken."""
+    if all(pace == paces[0] for pace in paces):
+        return paces[0], None
+    return legs_of(path, ends, paces)
+
+
+__all__ = ["Manners", "direct"]

@@ -98,7 +98,8 @@ class PlannedStep:
 
     ``stance`` stays; ``following`` is where the stance foot goes next, None at the end;
     ``before`` is where the stance foot came from, None at the beginning. ``local`` says how a
-    local step is taken; None: a step of a walk.
+    local step is taken; None: a step of a walk. ``gait`` names another gait than the person's
+    own.
     """
 
     index: int
@@ -110,6 +111,7 @@ class PlannedStep:
     following: Footstep | None
     duration: float
     local: LocalStep | None = None
+    gait: str | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gaitsmith.errors import InvalidInputError
 
@@ -17,22 +17,37 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class Tempo:
-    """How fast one action walks: as :func:`~gaitsmith.plan.pace.choose_pace` is told.
+    """How one action walks: its pace, and its gait.
 
     Attributes
     ----------
     speed, step_length, cadence
-        Meters per second, meters, steps per minute; None: not said. An action that says one of
-        them is paced by what it says alone.
+        Meters per second, meters, steps per minute, as
+        :func:`~gaitsmith.plan.pace.choose_pace` is told; None: not said. An action that says
+        one of them is paced by what it says alone.
+    gait
+        Name of another gait than the person's own: a built-in one, or one of the ``gaits`` that
+        :func:`gaitsmith.walk` is told; no blanks in it. None: the person's own.
     """
 
     speed: float | None = None
     step_length: float | None = None
     cadence: float | None = None
+    gait: str | None = None
+
+    def __post_init__(self) -> None:
+        """Check the name of the gait."""
+        if self.gait is not None and (
+            not self.gait or any(c.isspace() or c == ";" for c in self.gait)
+        ):
+            raise InvalidInputError(
+                f"the gait of an action must be a name without blanks and semicolons, got "
+                f"{self.gait!r}"
+            )
 
     @property
     def said(self) -> dict[str, float]:
-        """What is not None."""
+        """What is said of the pace."""
         return {n: v for n in TEMPI if (v := getattr(self, n)) is not None}
 
 
@@ -130,8 +145,8 @@ WAYS = ("forward", "back", "left", "right")
 #: What a walking action may say of its tempo: field, and unit.
 TEMPI = {"speed": "m/s", "step_length": "m", "cadence": "steps/min"}
 #: The same as written in a script, and the field's name.
-_TEMPO_WORDS = {name.replace("_", "-"): name for name in TEMPI}
-_TEMPO_FORM = "[speed M/S] [step-length M] [cadence STEPS/MIN]"
+_TEMPO_WORDS = {**{name.replace("_", "-"): name for name in TEMPI}, "gait": "gait"}
+_TEMPO_FORM = "[speed M/S] [step-length M] [cadence STEPS/MIN] [gait NAME]"
 #: What an action looks like, by its first word.
 FORMS = {
     "walk": f"walk to X,Z {_TEMPO_FORM}",
@@ -200,8 +215,10 @@ def written(action: Action) -> str:
         return repr(near)
 
     def at(tempo: Tempo | None) -> str:
-        said = {} if tempo is None else tempo.said
-        return "".join(f" {n.replace('_', '-')} {float(v)!r}" for n, v in said.items())
+        if tempo is None:
+            return ""
+        said = [f" {n.replace('_', '-')} {float(v)!r}" for n, v in tempo.said.items()]
+        return "".join(said) + (f" gait {tempo.gait}" if tempo.gait is not None else "")
 
     match action:
         case WalkTo(point, tempo):
@@ -307,17 +324,20 @@ def _parsed(text: str, number: int) -> Action:
 
 def _tempo(words: _Words) -> Tempo | None:
     """What follows of speed, step length and cadence, in any order."""
-    said: dict[str, float] = {}
+    said: dict[str, Any] = {}
     while words.left and not words.next_is_point:
         _take_tempo(words, words.word("word", *_TEMPO_WORDS), said)
     return Tempo(**said) if said else None
 
 
-def _take_tempo(words: _Words, word: str, said: dict[str, float]) -> None:
+def _take_tempo(words: _Words, word: str, said: dict[str, Any]) -> None:
     name = _TEMPO_WORDS[word]
     if name in said:
         raise words.wrong(f"{word} is said twice")
-    said[name] = words.size(f"the {word}", TEMPI[name], FASTEST[name])
+    if name == "gait":
+        said[name] = words.take("the gait")
+    else:
+        said[name] = words.size(f"the {word}", TEMPI[name], FASTEST[name])
 
 
 def _walk(words: _Words) -> Action:
@@ -366,7 +386,7 @@ def _lean(words: _Words) -> Action:
 def _be(words: _Words) -> Action:
     words.word("word", "at")
     point, heading, feet = words.point(), None, None
-    said: dict[str, float] = {}
+    said: dict[str, Any] = {}
     while words.left:
         word = words.word("word", "facing", "feet", *_TEMPO_WORDS)
         if word == "facing":

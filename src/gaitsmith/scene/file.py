@@ -54,15 +54,15 @@ def read_scene(path: str | Path) -> Scene:
     if reading.problems or table is None:
         raise FileFormatError(path, reading.said())
     try:
-        return _scene(table, path)
+        return _scene(table, path, reading.gaits)
     except GaitsmithError as error:
         raise FileFormatError(path, str(error)) from None
 
 
-def _scene(table: SceneTable, path: Path) -> Scene:
+def _scene(table: SceneTable, path: Path, gaits: dict[str, Any]) -> Scene:
     alone = len(table.walker) == 1
     walkers = [
-        _walker(walker, "walker" if alone else f"walker{i}")
+        _walker(walker, "walker" if alone else f"walker{i}", gaits)
         for i, walker in enumerate(table.walker, start=1)
     ]
     return Scene(
@@ -77,14 +77,14 @@ def _scene(table: SceneTable, path: Path) -> Scene:
     )
 
 
-def _walker(table: WalkerTable, name: str) -> Walker:
+def _walker(table: WalkerTable, name: str, gaits: dict[str, Any]) -> Walker:
     given = {key: getattr(table, key) for key in table.model_fields_set}
     given["name"] = table.name or name
     if table.start is not None:
         given["start"] = table.start.start()
     if isinstance(table.do, list):
         given["do"] = [item if not hasattr(item, "read") else item.read() for item in table.do]
-    return Walker(**given)
+    return Walker(**given, gaits=gaits)
 
 
 class _Reading:
@@ -94,6 +94,8 @@ class _Reading:
         self.path, self.data, self.lines = path, data, dict(lines)
         self.problems: list[tuple[int | None, str]] = []
         self.flat = "walker" not in data
+        #: What the gaits mean that actions name.
+        self.gaits: dict[str, Any] = {}
 
     def said(self) -> str:
         """All problems in the order of their lines."""
@@ -111,7 +113,8 @@ class _Reading:
         }
         data = self._unfolded(set(WalkerTable.model_fields))
         try:
-            table = SceneTable.model_validate(data, context={"folder": self.path.parent})
+            context = {"folder": self.path.parent, "gaits": self.gaits}
+            table = SceneTable.model_validate(data, context=context)
         except ValidationError as error:
             table = None
             for e in error.errors(include_url=False):

@@ -13,7 +13,7 @@ from gaitsmith.plan.surroundings import Surroundings
 from gaitsmith.scene.grounds import checked_ground
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from gaitsmith.body.body import Body
@@ -25,7 +25,18 @@ if TYPE_CHECKING:
 LATEST = 3600.0
 #: Arguments of :func:`gaitsmith.walk` that a walker has under the same name.
 SHARED = (
-    *("do", "path", "steps", "distance", "body", "gait", "speed", "step_length", "cadence"),
+    *(
+        "do",
+        "path",
+        "steps",
+        "distance",
+        "body",
+        "gait",
+        "gaits",
+        "speed",
+        "step_length",
+        "cadence",
+    ),
     *("step_width", "toe_out", "variation"),
 )
 
@@ -39,8 +50,8 @@ class Walker:
     name
         A letter, then letters, digits, ``_`` and ``-``: it becomes part of names of files,
         nodes and keys.
-    body, gait
-        Who, and how.
+    body, gait, gaits
+        Who, and how; what the gaits mean that actions name.
     do, path, steps, distance
         Where; exactly one of them.
     start
@@ -70,6 +81,7 @@ class Walker:
     toe_out: float | tuple[float, float] | None = None
     variation: float = 0.0
     seed: int | None = None
+    gaits: Mapping[str, str | Path | LearnedGait | dict[str, Any]] | None = None
 
     def __post_init__(self) -> None:
         """Check what does not depend on the body."""

@@ -21,6 +21,7 @@ from pydantic import (
 from gaitsmith.errors import GaitsmithError
 from gaitsmith.learning import body_of, gait_from
 from gaitsmith.motion.performance import checked_name
+from gaitsmith.plan.manners import gait_of
 from gaitsmith.plan.script import TEMPI, Action, read_script
 from gaitsmith.plan.start import Start
 from gaitsmith.plan.surroundings import Bar, Obstacle, Post
@@ -118,6 +119,17 @@ def _gait(value: object, info: ValidationInfo) -> Any:
     return gait
 
 
+def _action_gait(value: object, info: ValidationInfo) -> str:
+    """The name of an action's gait; what it means is kept in the context."""
+    assert info.context is not None
+    if not isinstance(value, str) or not value or any(c.isspace() for c in value):
+        raise ValueError(f"must be a name or a file without blanks in it, got {value!r}")
+    known = info.context["gaits"]
+    if value not in known:
+        known[value] = _gait(value, info)
+    return value
+
+
 def _path(value: object, info: ValidationInfo) -> Any:
     if isinstance(value, list):
         given: Any = _points(value)
@@ -142,7 +154,7 @@ def _toe_out(value: object) -> Any:
     return (left, right)
 
 
-def _script(value: object) -> list[Action]:
+def _script(value: object, info: ValidationInfo) -> list[Action]:
     """The actions of a script; all that is wrong in it is said."""
     if not isinstance(value, str):
         raise ValueError(f"must be a script or [[do]] tables, got {value!r}")
@@ -152,10 +164,15 @@ def _script(value: object) -> list[Action]:
     actions, problems = list[Action](), list[str]()
     for i, part in enumerate(parts, start=1):
         try:
-            actions += read_script(part)
-        except GaitsmithError as error:
+            (action,) = read_script(part)
+            gait = gait_of(getattr(action, "tempo", None))
+            if gait is not None:
+                _action_gait(gait, info)
+            actions.append(action)
+        except (GaitsmithError, ValueError) as error:
             text = str(error) if part.strip() else "action 1 is empty; remove a semicolon"
-            problems.append(text.replace("action 1", f"action {i}", 1))
+            text = text.replace("action 1", f"action {i}", 1)
+            problems.append(text if text.startswith("action") else f"action {i}: {text}")
     if problems:
         raise ValueError("; ".join(problems))
     return actions
@@ -221,6 +238,7 @@ class DoTable(Table):
     speed: Speed | None = None
     step_length: Length | None = None
     cadence: Cadence | None = None
+    gait: Annotated[Any, PlainValidator(_action_gait)] = None
 
     def read(self) -> Action:
         """The action that the table says."""
@@ -231,8 +249,9 @@ class DoTable(Table):
                 + (" and ".join(verbs) if verbs else "none of them")
             )
         verb, how = verbs[0], self.model_fields_set - set(VERBS)
-        allowed = {"walk_to": {*TEMPI}, "follow": {*TEMPI}, "action": {*TEMPI}}
-        allowed["be_at"] = {*TEMPI, "facing", "feet"}
+        walking = {*TEMPI, "gait"}
+        allowed = {"walk_to": walking, "follow": walking, "action": walking}
+        allowed["be_at"] = {*walking, "facing", "feet"}
         odd = sorted(how - allowed.get(verb, set()))
         if odd:
             homes = {"facing": "be_at", "feet": "be_at"}
@@ -266,6 +285,7 @@ class DoTable(Table):
             for name in TEMPI
             if (value := getattr(self, name)) is not None
         ]
+        words += [f"gait {self.gait}"] if self.gait is not None else []
         return " ".join(words)
 
     @model_validator(mode="after")

@@ -8,7 +8,7 @@ from gaitsmith.conventions import LOCAL_KINDS
 from gaitsmith.synthesis.step import PreparedStep, StepGenerator, WalkerState
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from gaitsmith.body.body import Body
     from gaitsmith.plan.footsteps import PlannedStep
@@ -16,16 +16,28 @@ if TYPE_CHECKING:
 
 
 class MixedGenerator:
-    """Walks by one generator, local steps by another, in any order."""
+    """Walks by one generator, local steps by another, in any order.
 
-    def __init__(self, walking: CurvedGenerator, local: StepGenerator) -> None:
+    ``gaits`` are generators of walks in other gaits, by the names that steps have.
+    """
+
+    def __init__(
+        self,
+        walking: CurvedGenerator,
+        local: StepGenerator,
+        gaits: Mapping[str, CurvedGenerator] | None = None,
+    ) -> None:
         self._walking, self._local = walking, local
+        self._gaits = gaits or {}
+
+    def _of(self, step: PlannedStep) -> CurvedGenerator:
+        return self._walking if step.gait is None else self._gaits[step.gait]
 
     def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
         """See :meth:`gaitsmith.synthesis.step.StepGenerator.prepare`."""
         if step.kind in LOCAL_KINDS:
             return self._local.prepare(body, state, step)
-        return self._walking.prepare(body, state, step)
+        return self._of(step).prepare(body, state, step)
 
     def prepare_all(
         self, body: Body, state: WalkerState, steps: Sequence[PlannedStep]
@@ -40,7 +52,7 @@ class MixedGenerator:
                 j = i + 1
                 while j < len(steps) and steps[j].kind not in (*LOCAL_KINDS, "start"):
                     j += 1
-                done = self._walking.prepare_all(body, WalkerState(), steps[i:j])
+                done = self._of(steps[i]).prepare_all(body, WalkerState(), steps[i:j])
             out += done
             i += len(done)
             state = done[-1].end if steps[i - 1].kind in LOCAL_KINDS else WalkerState()
