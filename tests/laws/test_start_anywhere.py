@@ -9,8 +9,12 @@ import pytest
 from judge import broken
 
 from gaitsmith import InfeasibleError, InvalidInputError, regenerate, walk
+from gaitsmith.geometry.rotations import rotate
 from gaitsmith.motion.kinematics import joint_positions, motion_kinematics, sole_positions
-from gaitsmith.plan.script import BeAt, Follow, Step, Tempo, Turn, WalkTo
+from gaitsmith.plan.legs import legs_of
+from gaitsmith.plan.pace import Pace
+from gaitsmith.plan.paths import Path
+from gaitsmith.plan.script import BeAt, Follow, LookAt, Stand, Step, Tempo, Turn, WalkTo
 from gaitsmith.plan.start import Start
 
 ACTIONS = [
@@ -20,6 +24,7 @@ ACTIONS = [
     Step("back", 0.3),
     BeAt((2.6, 2.4), 2.0),
 ]
+ON_THE_SPOT = [Stand(0.5), Step("left", 0.3), LookAt((1.0, 1.2, 2.0)), Stand(1.0), Turn(-0.8)]
 
 
 def moved(points, at, heading):
@@ -39,21 +44,32 @@ def carried(actions, at, heading):
             out.append(type(action)(**turned))
         elif isinstance(action, Follow):
             out.append(Follow(tuple(map(tuple, moved(action.points, at, heading)))))
+        elif isinstance(action, LookAt):
+            x, y, z = action.point
+            (x, z) = moved((x, z), at, heading)
+            out.append(LookAt((x, y, z)))
         else:
             out.append(action)
     return out
 
 
+@pytest.mark.parametrize("actions", [ACTIONS, ON_THE_SPOT])
 @pytest.mark.parametrize(("at", "heading"), [((3.0, -2.0), 1.1), ((-7.5, 4.0), -2.9)])
-def test_a_script_carried_elsewhere_is_the_same_script(at, heading):
+def test_a_script_carried_elsewhere_is_the_same_script(actions, at, heading):
     """Rigid motions of the floor change nothing, to 1e-9."""
-    here = walk(do=ACTIONS, fps=24.0)
-    there = walk(do=carried(ACTIONS, at, heading), start=Start(at=at, facing=heading), fps=24.0)
+    here = walk(do=actions, fps=24.0)
+    there = walk(do=carried(actions, at, heading), start=Start(at=at, facing=heading), fps=24.0)
     assert len(here) == len(there)
     one, other = joint_positions(here), joint_positions(there)
     np.testing.assert_allclose(other[..., 1], one[..., 1], atol=1e-9)
     np.testing.assert_allclose(
         other[..., [0, 2]], moved(one[..., [0, 2]], at, heading), atol=1e-9, rtol=0
+    )
+    front = [
+        rotate(motion_kinematics(motion)[1], np.array([0.0, 0.0, 1.0])) for motion in (here, there)
+    ]
+    np.testing.assert_allclose(
+        front[1][..., [0, 2]], moved(front[0][..., [0, 2]], (0.0, 0.0), heading), atol=1e-9
     )
     turn = there.labels.footstep_heading - here.labels.footstep_heading
     np.testing.assert_allclose(turn, heading, atol=1e-9)
@@ -155,6 +171,17 @@ def test_an_action_that_walks_all_the_way_at_one_speed_is_that_walk():
     one, other = walk(distance=4.0, speed=1.0, fps=24.0), walk(do="walk to 0,4 speed 1", fps=24.0)
     np.testing.assert_allclose(other.root_position, one.root_position, atol=1e-9)
     np.testing.assert_allclose(other.rotations, one.rotations, atol=1e-9)
+
+
+def test_half_of_the_change_of_pace_is_done_where_two_legs_meet():
+    slow, quick = Pace(0.4, 90.0), Pace(0.8, 120.0)
+    path = Path.through([(0.0, 0.0), (1.0, 5.0), (4.0, 8.0)])
+    base, legs = legs_of(path, [np.array([1.0, 5.0]), np.array([4.0, 8.0])], [slow, quick])
+    assert base == quick
+    meet = path.along[np.linalg.norm(path.points - [1.0, 5.0], axis=1).argmin()]
+    at = meet + np.array([-0.8, 0.0, 0.8])
+    np.testing.assert_allclose(legs.length_at(at), [0.5, 0.75, 1.0], atol=1e-12)
+    np.testing.assert_allclose(legs.duration_at(at), [4.0 / 3.0, 7.0 / 6.0, 1.0], atol=1e-12)
 
 
 @pytest.mark.parametrize(
