@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitsmith.errors import InfeasibleError, UnknownFormatError
-from gaitsmith.io import MARKER_READERS, READERS
+from gaitsmith.io import MARKER_READERS, READERS, load_performance
+from gaitsmith.io.npz import walkers_in
 from gaitsmith.learning import load_clip
 from gaitsmith.measures.report import measured
 from gaitsmith.motion.motion import Markers, Motion
@@ -58,3 +59,12 @@ def measure(clip: str | PathLike[str] | Motion, *, unit: str | None = None) -> F
         return measured(motion)
     except InfeasibleError as error:
         raise InfeasibleError(f"{path}: {error}") from None
+
+
+def people_in(path: str | PathLike[str]) -> list[tuple[str, Path | Motion]]:
+    """What to measure in a file, and how to call it: everybody in an npz of several people."""
+    path = Path(path)
+    names = walkers_in(path) if path.suffix.lower() == ".npz" else ()
+    if len(names) < 2:
+        return [(str(path), path)]
+    return [(f"{path}:{name}", motion) for name, motion in load_performance(path)]

@@ -49,6 +49,19 @@ def test_one_file_of_all_and_one_each(run, scene, tmp_path):
         assert data["fps"] == 20.0
 
 
+def test_measure_takes_everybody_in_a_file(run, scene):
+    run("walk", "--scene", scene, "-o", "all.npz", "-o", "{walker}.npz")
+    code, out, err = run("measure", "all.npz", "--json")
+    assert (code, err) == (0, "")
+    files = json.loads(out)["files"]
+    assert [f["file"] for f in files] == ["all.npz:ann", "all.npz:ben"]
+    for figures in files:
+        name = figures["file"].partition(":")[2]
+        alone = json.loads(run("measure", f"{name}.npz", "--json")[1])
+        assert {**figures, "file": ""} == {**alone, "file": ""}
+    assert "all.npz:ben" in run("measure", "all.npz")[1]
+
+
 def test_json_has_the_keys_of_a_walk_for_each(run, scene):
     code, out, _ = run("walk", "--scene", scene, "-o", "{walker}.npz", "--json")
     assert code == 0

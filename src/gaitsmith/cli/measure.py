@@ -40,9 +40,10 @@ def measure(
 
     found = list[dict[str, Any]]()
     for path in files:
-        with collected_warnings() as said:
-            figures = measuring.measure(path, unit=unit)
-        found.append({"file": str(path), **figures, "warnings": said})
+        for name, clip in measuring.people_in(path):
+            with collected_warnings() as said:
+                figures = measuring.measure(clip, unit=unit)
+            found.append({"file": name, **figures, "warnings": said})
     if json:
         import json as encoder
 

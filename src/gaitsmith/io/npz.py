@@ -162,6 +162,24 @@ def read_npz_performance(path: Path) -> Performance:
         raise FileFormatError(path, str(error)) from None
 
 
+def walkers_in(path: Path) -> tuple[str, ...]:
+    """Names of the people in the npz at ``path``, if it is one of several; else none.
+
+    Of a file that is no npz none, too: who reads it says what is wrong.
+    """
+    import zipfile
+
+    try:
+        with zipfile.ZipFile(path) as archive:
+            if "walkers.npy" not in archive.namelist():
+                return ()
+            with archive.open("walkers.npy") as stream:
+                array = np.lib.format.read_array(stream, allow_pickle=False)
+        return _names(path, {"walkers": array})
+    except Exception:  # as in _load, anything may be wrong
+        return ()
+
+
 def _of(
     arrays: dict[str, Shaped[np.ndarray, "..."]], prefix: str
 ) -> dict[str, Shaped[np.ndarray, "..."]]:
