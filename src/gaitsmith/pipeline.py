@@ -28,7 +28,7 @@ from gaitsmith.plan.rhythm import Rhythm
 from gaitsmith.plan.script import Script, Tempo
 from gaitsmith.plan.start import Start, start_of, start_to_dict
 from gaitsmith.plan.where import read_where
-from gaitsmith.synthesis.habits import own_pace, stance_of
+from gaitsmith.synthesis.habits import own_pace, stance_of, with_habits
 from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
 from gaitsmith.synthesis.straight import StraightGenerator
@@ -245,16 +245,8 @@ def walk(
     }
     ground = GROUNDS["flat"]()
     keep = cadence is not None
-
-    def rhythm_of(own: Habits | None) -> Rhythm:
-        return Rhythm(
-            lengths=own.lengths if own and step_length is None else (1.0, 1.0),
-            durations=own.durations if own and cadence is None else (1.0, 1.0),
-            variation=variation,
-            seed=seed,
-        )
-
-    rhythm = rhythm_of(style.habits)
+    vary = Rhythm(variation=variation, seed=seed)
+    rhythm = with_habits(vary, style.habits, asked)
     outside = banking == "body"
     plan: StepPlan | Timeline
     if isinstance(where, Script):
@@ -265,7 +257,7 @@ def walk(
             name: replace(
                 manners,
                 pace=paced(asked, other.habits),
-                rhythm=rhythm_of(other.habits),
+                rhythm=with_habits(vary, other.habits, asked),
                 paced=partial(paced, habits=other.habits),
             )
             for name, (other, _) in others.items()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,8 @@ from gaitsmith.plan.pace import Pace
 
 if TYPE_CHECKING:
     from gaitsmith.body.body import Body
+    from gaitsmith.plan.rhythm import Rhythm
+    from gaitsmith.plan.script import Tempo
     from gaitsmith.synthesis.gaits import Habits
 
 #: Step width over stature: 0.10 m for 1.75 m. People walk with 0.06-0.14 m; 0.13 leg lengths
@@ -32,6 +35,17 @@ def own_pace(body: Body, habits: Habits) -> Pace:
     return Pace(
         step_length=habits.step_length * body.leg_length,
         cadence=habits.cadence * float(np.sqrt(habits.leg_length / body.leg_length)),
+    )
+
+
+def with_habits(rhythm: Rhythm, habits: Habits | None, asked: Tempo) -> Rhythm:
+    """``rhythm`` with a person's own left and right, but for what was asked for."""
+    if habits is None:
+        return rhythm
+    return replace(
+        rhythm,
+        lengths=habits.lengths if asked.step_length is None else (1.0, 1.0),
+        durations=habits.durations if asked.cadence is None else (1.0, 1.0),
     )
 
 
