@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 #: The sole keeps this far from the ground in swing, meters, rising over a fifth of the swing.
 CLEARANCE, CLEARANCE_RAMP = 0.010, 0.2
 #: So much of it at once, so that no curve dips below the ground between nodes.
-AT_ONCE, AT_ONCE_RAMP = 0.0004, 0.05
+AT_ONCE, AT_ONCE_RAMPS = 0.0004, (0.025, 0.05)
 #: Deepest that the sole's lowest point may be drawn between nodes, meters, before they are lifted,
 #: and by how much of what is deeper.
 DIPS, LIFTED = 0.0001, 1.5
@@ -336,7 +336,8 @@ def _clearance(
     ``u`` is the phase of the swing.
     """
     want = CLEARANCE * smoothstep(u / CLEARANCE_RAMP) * smoothstep((1.0 - u) / CLEARANCE_RAMP)
-    want = want + AT_ONCE * smoothstep(u / AT_ONCE_RAMP) * smoothstep((1.0 - u) / AT_ONCE_RAMP)
+    leaving, landing = AT_ONCE_RAMPS
+    want = want + AT_ONCE * smoothstep(u / leaving) * smoothstep((1.0 - u) / landing)
     short = want - height.min(-1)
     soft = 0.3 * want + 1e-9  # a soft maximum: no corner where the lift begins
     return 0.5 * (short + np.sqrt(short**2 + soft**2))
