@@ -27,6 +27,7 @@ from gaitsmith.plan.paths import Path as WalkPath
 from gaitsmith.plan.rhythm import Rhythm
 from gaitsmith.plan.script import Script, Tempo
 from gaitsmith.plan.start import Start, start_of, start_to_dict
+from gaitsmith.plan.surroundings import Surroundings
 from gaitsmith.plan.where import read_where
 from gaitsmith.synthesis.habits import own_pace, stance_of, with_habits
 from gaitsmith.synthesis.sample import sample_walk
@@ -43,11 +44,12 @@ if TYPE_CHECKING:
     from gaitsmith.ground import Ground
     from gaitsmith.motion.motion import Motion
     from gaitsmith.plan.lengths import Stance
+    from gaitsmith.plan.routes import Routes
     from gaitsmith.plan.script import Action
     from gaitsmith.plan.timeline import Timeline
     from gaitsmith.plan.where import PathLike, StepsLike
     from gaitsmith.synthesis.gaits import Gait, Habits
-    from gaitsmith.synthesis.step import StepGenerator
+    from gaitsmith.synthesis.step import PreparedWalk, StepGenerator
     from gaitsmith.walks.learned import LearnedGait
 
 #: Seconds of standing after a stop.
@@ -100,6 +102,7 @@ def walk(
     seed: int = 0,
     begin: float = 0.0,
     until: float | None = None,
+    surroundings: Surroundings | Mapping[str, Any] | None = None,
 ) -> Motion:
     """A person who walks a distance, along a path or on given footsteps, on level ground.
 
@@ -160,6 +163,10 @@ def walk(
     begin, until
         Seconds that the person stands before it begins, and to which it stands on at least
         once it has arrived; ``until`` is None: no longer than the stop needs.
+    surroundings
+        What stands around (:class:`~gaitsmith.plan.surroundings.Surroundings`): obstacles that
+        scripts walk round and everything else must keep clear of, bars to duck under, posts to
+        lean past.
 
     Returns
     -------
@@ -221,6 +228,7 @@ def walk(
     pace = paced(asked)
     actions = where.actions if isinstance(where, Script) else ()
     others = gaits_named(actions, gaits or {}, manner)
+    around = Surroundings.read(surroundings)
     recipe = {
         "gaitsmith": __version__,
         "walk": {
@@ -241,6 +249,7 @@ def walk(
             **({"gaits": {n: told for n, (_, told) in others.items()}} if others else {}),
             "fps": fps,
             "seed": seed,
+            **({} if around.empty else {"surroundings": around.as_dict()}),
         },
     }
     ground = GROUNDS["flat"]()
@@ -248,34 +257,45 @@ def walk(
     vary = Rhythm(variation=variation, seed=seed)
     rhythm = with_habits(vary, style.habits, asked)
     outside = banking == "body"
-    plan: StepPlan | Timeline
-    if isinstance(where, Script):
-        from gaitsmith.plan.director import Manners, direct  # late, as in _generator
 
-        manners = Manners(who, pace, stance, ground, rhythm, outside, keep, paced)
-        in_others = {
-            name: replace(
-                manners,
-                pace=paced(asked, other.habits),
-                rhythm=with_habits(vary, other.habits, asked),
-                paced=partial(paced, habits=other.habits),
-            )
-            for name, (other, _) in others.items()
-        }
-        manners = replace(manners, gaits=in_others)
-        plan = direct(where.actions, manners, start if isinstance(start, Start) else None)
-    else:
+    def planned(routes: Routes | None = None) -> StepPlan | Timeline:
+        if isinstance(where, Script):
+            from gaitsmith.plan.director import Manners, direct  # late, as in _generator
+
+            manners = Manners(who, pace, stance, ground, rhythm, outside, keep, paced)
+            in_others = {
+                name: replace(
+                    manners,
+                    pace=paced(asked, other.habits),
+                    rhythm=with_habits(vary, other.habits, asked),
+                    paced=partial(paced, habits=other.habits),
+                )
+                for name, (other, _) in others.items()
+            }
+            manners = replace(manners, gaits=in_others, routes=routes)
+            return direct(where.actions, manners, start if isinstance(start, Start) else None)
         begins = "stand" if isinstance(start, Start) else start
-        plan = _plan(
+        return _plan(
             where, who, pace, stance, rhythm, ground, begins, stop, keep=keep, outside=outside
         )
-    if step_length is not None and isinstance(where, WalkPath) and isinstance(plan, StepPlan):
-        _warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
+
     ahead = isinstance(where, WalkPath) and where.straight and not variation
     gaits_of = {name: other for name, (other, _) in others.items()}
-    generator = _generator(plan, style, ground, banking, ahead=ahead, gaits=gaits_of)
-    prepared = prepare_walk(plan, generator, who, ground, rest=REST)
-    motion = sample_walk(prepared, who, ground, fps=fps, recipe=recipe, begin=float(begin))
+
+    def prepared(plan: StepPlan | Timeline) -> PreparedWalk:
+        generator = _generator(plan, style, ground, banking, ahead=ahead, gaits=gaits_of)
+        return prepare_walk(plan, generator, who, ground, rest=REST)
+
+    if around.empty:
+        walked = prepared(planned())
+    else:
+        from gaitsmith.synthesis.among import walk_among  # late: most walks have nothing around
+
+        walked = walk_among(planned, prepared, who, ground, around)
+    plan = walked.plan
+    if step_length is not None and isinstance(where, WalkPath) and isinstance(plan, StepPlan):
+        _warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
+    motion = sample_walk(walked, who, ground, fps=fps, recipe=recipe, begin=float(begin))
     return motion if until is None else stand_on(motion, until)
 
 

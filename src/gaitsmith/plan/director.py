@@ -13,6 +13,7 @@ from gaitsmith.plan.follow import follow
 from gaitsmith.plan.footsteps import Footstep, LocalStep, PlannedStep
 from gaitsmith.plan.legs import Legs, legs_of
 from gaitsmith.plan.manners import Manners, gait_of
+from gaitsmith.plan.routes import is_blocked, path_among
 from gaitsmith.plan.script import (
     Action,
     BeAt,
@@ -28,7 +29,7 @@ from gaitsmith.plan.script import (
 from gaitsmith.plan.start import Start
 from gaitsmith.plan.stepping import FARTHEST, LARGEST_TURN, classify, turnaround, turning_side
 from gaitsmith.plan.timeline import Timeline
-from gaitsmith.plan.ways import NO_WAY, from_feet, goals_of, leads, on_floor, path_through, wrapped
+from gaitsmith.plan.ways import NO_WAY, from_feet, goals_of, leads, on_floor, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -190,11 +191,15 @@ class _Director:
 
     def _walk(self, run: Sequence[tuple[Way, bool, Tempo | None]]) -> None:
         ways = [(way, soft) for way, soft, _ in run]
-        path = path_through(self.middle, ways)
+        path = path_among(self.manners.routes, self.middle, ways)
+        if path is None:  # no one way past what stands around: from point to point
+            for leg in run:
+                self._walk([leg])
+            return
         aside = wrapped(float(path.heading[0]) - self.facing)
         if abs(aside) > TURN_FIRST:
             self._turn(aside, walks_on=True)
-            path = path_through(self.middle, ways)
+            path = path_among(self.manners.routes, self.middle, ways) or path
         if self.planned and self.planned[-1].kind not in ("stop", "stand"):
             self._stand(BEFORE_WALK)
         gait = gait_of(run[0][2])
@@ -322,7 +327,8 @@ class _Director:
         goals = goals_of(action, self.facing, self.manners.stance)
         place = 0.5 * (goals[LEFT][0] + goals[RIGHT][0])
         facing = 0.5 * (goals[LEFT][1] + goals[RIGHT][1])
-        if float(np.linalg.norm(place - self.middle)) > STEP_ONLY:
+        away = float(np.linalg.norm(place - self.middle))
+        if away > STEP_ONLY or is_blocked(self.manners.routes, self.middle, place):
             self._walk([([place], False, action.tempo)])
         self._turn(wrapped(facing - self.facing), walks_on=False)
         self._settle()

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from gaitsmith.plan.lengths import Stance
     from gaitsmith.plan.pace import Pace
     from gaitsmith.plan.rhythm import Rhythm
+    from gaitsmith.plan.routes import Routes
     from gaitsmith.plan.script import Tempo
 
 
@@ -32,6 +33,7 @@ class Manners:
     keep_cadence: bool = False
     paced: Callable[[Tempo], Pace] | None = None
     gaits: Mapping[str, Manners] | None = None
+    routes: Routes | None = None
 
     def in_gait(self, gait: str | None) -> Manners:
         """How the person walks in a gait of that name; None: as usual."""

@@ -27,9 +27,6 @@ if TYPE_CHECKING:
     from gaitsmith.plan.surroundings import Surroundings
     from gaitsmith.scene.model import Walker
 
-#: Said of scenes with things in them until ``walk`` takes ``surroundings``.
-NOT_YET = "what stands around is shown, but nobody walks round it yet"
-
 
 def perform(scene: Scene | str | Path, *, fps: float = 60.0, seed: int = 0) -> Performance:
     """Everybody of a scene walks, on one time axis.
@@ -74,8 +71,6 @@ def perform(scene: Scene | str | Path, *, fps: float = 60.0, seed: int = 0) -> P
         scene = read_scene(scene)
     motions: list[Motion] = []
     problems: list[tuple[str, GaitsmithError]] = []
-    if scene.surroundings != type(scene.surroundings)():
-        warnings.warn(NOT_YET, GaitsmithWarning, stacklevel=2)
     for i, walker in enumerate(scene.walkers):
         named = f"{walker.name}: " if len(scene.walkers) > 1 else ""
         try:
@@ -124,13 +119,8 @@ def _walked(walker: Walker, scene: Scene, named: str, fps: float, seed: int) -> 
 
 
 def _among(surroundings: Surroundings) -> dict[str, Any]:
-    """What ``walk`` is told of what stands around: the ONE place that passes it on.
-
-    Once :func:`~gaitsmith.pipeline.walk` takes them: ``return {"surroundings": surroundings}``,
-    and :data:`NOT_YET` goes.
-    """
-    del surroundings
-    return {}
+    """What ``walk`` is told of what stands around."""
+    return {} if surroundings.empty else {"surroundings": surroundings}
 
 
 def _said_of(surroundings: Surroundings) -> dict[str, Any]:

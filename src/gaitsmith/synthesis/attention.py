@@ -8,14 +8,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.body.rig import spine_names
+from gaitsmith.conventions import LOCAL_KINDS, SIDES
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.rotations import exp, log, multiply, rotate
+from gaitsmith.synthesis.balance import Balance
+from gaitsmith.synthesis.overlay import upper_joints
+from gaitsmith.synthesis.shifting import shifted
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
-    from gaitsmith.contact import Poses
+    from gaitsmith.contact import Poses, ReferenceStep
+    from gaitsmith.conventions import StepKind
+    from gaitsmith.synthesis.clock import Clock
 
 #: Seconds in which the head turns to a new point (head 70-400 deg/s in turns).
 LOOK_SECONDS = 0.55
@@ -24,8 +32,10 @@ LOOK_SECONDS = 0.55
 EASY, STEEP = float(np.radians(60.0)), float(np.radians(55.0))
 #: Shares of a turn of the gaze that spine and neck take; the head has the rest.
 SPINE, NECK = 1.0 / 3.0, 1.0 / 3.0
-#: Part of a lean that neck and head take back.
-LEVEL = 0.6
+#: Part of a lean that neck and head, and that hanging arms take back.
+LEVEL, HANGING = 0.6, 0.9
+#: Part of the balance aside that hips keep in a walk, and seconds in which that changes.
+WALKING, EASE = 0.3, 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,17 +58,30 @@ class Attention:
         return replace(poses, upper=upper)
 
     def _lean(self, times: Float[np.ndarray, "F"], upper: Float[np.ndarray, "F U 3"]) -> None:
-        lean, before = np.zeros((len(times), 2)), np.zeros(2)
-        for begin, end, pitch, roll in self.leans:
-            goal = np.array([pitch, roll])
-            lean += smoothstep((times - begin) / (end - begin))[:, None] * (goal - before)
+        goals = np.array([(pitch, roll) for _, _, pitch, roll in self.leans])
+        self.bend(upper, self.over_time(times, goals))
+
+    def over_time(
+        self, times: Float[np.ndarray, "F"], goals: Float[np.ndarray, "L c"]
+    ) -> Float[np.ndarray, "F c"]:
+        """From nothing to each of ``goals``, one a lean, as the leans are eased in."""
+        out, before = np.zeros((len(times), goals.shape[1])), np.zeros(goals.shape[1])
+        for (begin, end, _, _), goal in zip(self.leans, goals, strict=True):
+            out += smoothstep((times - begin) / (end - begin))[:, None] * (goal - before)
             before = goal
+        return out
+
+    def bend(self, upper: Float[np.ndarray, "F U 3"], lean: Float[np.ndarray, "F 2"]) -> None:
+        """Bend the trunk by (pitch, roll); the head stays more level, arms go on hanging."""
         count = len(spine_names(self.body.spine_segments))
-        turn = np.stack([lean[:, 0], np.zeros(len(times)), -lean[:, 1]], axis=-1)
+        turn = np.stack([lean[:, 0], np.zeros(len(lean)), -lean[:, 1]], axis=-1)
         for i in range(count):
             upper[:, i] = log(multiply(exp(turn / count), exp(upper[:, i])))
-        for i in (count, count + 1):
-            upper[:, i] = log(multiply(exp(-0.5 * LEVEL * turn), exp(upper[:, i])))
+        names = upper_joints(self.body)
+        arms = [names.index(f"{side}UpperArm") for side in SIDES]
+        for joints, back in (((count, count + 1), 0.5 * LEVEL), (arms, HANGING)):
+            for i in joints:
+                upper[:, i] = log(multiply(exp(-back * turn), exp(upper[:, i])))
 
     def _look(
         self, times: Float[np.ndarray, "F"], poses: Poses, upper: Float[np.ndarray, "F U 3"]
@@ -103,6 +126,43 @@ class Attention:
             head = multiply(head, exp(upper[:, i]))
         face = rotate(head, np.array([0.0, 0.0, 1.0]))
         return np.arctan2(face[:, 0], face[:, 2]), np.arcsin(np.clip(face[:, 1], -1.0, 1.0))
+
+
+def balanced(
+    steps: Sequence[ReferenceStep],
+    kinds: Sequence[StepKind],
+    clock: Clock,
+    attention: Attention,
+) -> Sequence[ReferenceStep]:
+    """The same steps with the hips moved against the leans, the center of mass over the feet.
+
+    People who bend forward move their hips back, who lean left move them right. In a walk the
+    hips stay nearly over its path: they go aside by :data:`WALKING` of that.
+    """
+    if not attention.leans:
+        return steps
+    goals = np.array([(pitch, roll) for _, _, pitch, roll in attention.leans])
+    curves, count = steps[0].curves, len(goals)
+    pelvis = exp(np.tile(curves.pelvis[0], (count, 1)))
+    before = np.tile(curves.upper[0], (count, 1, 1))
+    after = np.array(before)
+    attention.bend(after, goals)
+    moves = Balance(attention.body).counter((pelvis, before), (pelvis, after))
+
+    walks = [kind not in LOCAL_KINDS for kind in kinds]
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], walks, [0]]).astype(int)))
+    spans = clock.starts[edges].reshape(-1, 2)
+
+    def shift(times: Float[np.ndarray, "n"]) -> tuple[np.ndarray, np.ndarray]:
+        out = attention.over_time(times, moves)
+        for begin, end in spans.tolist():
+            inside = smoothstep((times - begin) / EASE + 0.5) * smoothstep(
+                (end - times) / EASE + 0.5
+            )
+            out[:, 0] *= 1.0 - (1.0 - WALKING) * inside
+        return out, np.zeros(len(times))
+
+    return shifted(steps, clock, shift)
 
 
 def _turned(

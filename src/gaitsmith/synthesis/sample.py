@@ -63,7 +63,7 @@ def sample_walk(
         rows = slice(start, min(start + BLOCK, frames))
         poses = walk.poses(np.clip(times[rows] - begin, 0.0, walk.duration))
         root[rows], contacts[rows] = poses.center, poses.contacts
-        local = _local_rotations(poses, body, skeleton)
+        local = local_rotations(poses, body, skeleton)
         before = _keep_signs(local, before)
         rotations[rows] = local.transpose(2, 0, 1)
     for array in (root, rotations, contacts):
@@ -78,7 +78,7 @@ def sample_walk(
     )
 
 
-def _local_rotations(
+def local_rotations(
     poses: Poses, body: Body, skeleton: Skeleton
 ) -> Float[np.ndarray, "joints 4 F"]:
     """Joint to parent, frames last: what is next to each other is worked on together."""

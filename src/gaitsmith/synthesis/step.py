@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from gaitsmith.ground import Ground
     from gaitsmith.plan.footsteps import PlannedStep
     from gaitsmith.plan.timeline import Timeline
-    from gaitsmith.synthesis.attention import Attention
 
 
 @dataclass(frozen=True)
@@ -132,14 +131,28 @@ class TabledStep:
         return self._plan.poses(np.asarray(phases, dtype=np.float64))
 
 
+class Bending(Protocol):
+    """What is laid over finished poses: a bent trunk, a turned head."""
+
+    def applied(self, times: Float[np.ndarray, "F"], poses: Poses) -> Poses:
+        """The same poses, bent as at ``times``, seconds."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class PreparedWalk:
-    """Steps, their common contact plan and the clock: a walk that can be looked at any time."""
+    """Steps, their common contact plan and the clock: a walk that can be looked at any time.
+
+    ``references`` are the joined proposals that ``contact`` was planned from; ``dodge`` is how
+    the body bends past things.
+    """
 
     plan: StepPlan | Timeline
     contact: ContactPlan
     clock: Clock
-    attention: Attention | None = None
+    attention: Bending | None = None
+    references: tuple[ReferenceStep, ...] = ()
+    dodge: Bending | None = None
 
     @property
     def duration(self) -> float:
@@ -149,7 +162,9 @@ class PreparedWalk:
     def poses(self, times: Float[np.ndarray, "F"]) -> Poses:
         """Poses at ``times`` in seconds, in [0, duration], in any order."""
         poses = self.contact.poses(self.clock.walk_phase(times))
-        return poses if self.attention is None else self.attention.applied(times, poses)
+        for more in (self.attention, self.dodge):
+            poses = poses if more is None else more.applied(times, poses)
+        return poses
 
 
 def prepare_walk(
@@ -170,12 +185,14 @@ def prepare_walk(
     references = join_all([p.reference for p in prepared], plan.kinds)
     if stands:
         references.append(_stand_still(references[-1]))
-    contact, attention = plan_contact(references, body, ground), None
+    attention = None
     if not isinstance(plan, StepPlan):
-        from gaitsmith.synthesis.attention import Attention  # late: of scripts only
+        from gaitsmith.synthesis.attention import Attention, balanced  # late: of scripts only
 
         attention = Attention(body, plan.looks, plan.leans)
-    return PreparedWalk(plan, contact, clock, attention)
+        references = balanced(references, plan.kinds, clock, attention)
+    contact = plan_contact(references, body, ground)
+    return PreparedWalk(plan, contact, clock, attention, tuple(references))
 
 
 def _prepared(steps: list[PlannedStep], generator: StepGenerator, body: Body) -> list[PreparedStep]:

@@ -10,6 +10,7 @@ import numpy as np
 from gaitsmith.conventions import ahead, leftward
 from gaitsmith.skin.shoe import outline
 from gaitsmith.viz import palette
+from gaitsmith.viz.around import draw_on_map
 from gaitsmith.viz.canvas import Area, nice_step, pairs
 
 if TYPE_CHECKING:
@@ -120,6 +121,8 @@ def map_panel(canvas: Canvas, tracks: Tracks, area: Area) -> None:
     start = tracks.motion.root_position[0]
     floor_grid(canvas, to, area, start)
     _map_edges(canvas, tracks, to, area)
+    inside = Area(area.left, area.top, area.right, area.bottom - 20.0)
+    draw_on_map(canvas, tracks.around, to, scale, inside)
     labels = tracks.motion.labels
     if labels is not None and labels.path is not None and len(labels.path) > 1:
         path = np.stack([labels.path[:, 0], np.zeros(len(labels.path)), labels.path[:, 1]], axis=1)

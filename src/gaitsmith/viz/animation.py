@@ -11,6 +11,7 @@ from gaitsmith._checks import positive
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.viz import palette
 from gaitsmith.viz.above import footprints
+from gaitsmith.viz.around import draw_floor, draw_rods
 from gaitsmith.viz.render import Camera, camera, draw_figure
 from gaitsmith.viz.shadows import ELEVATION as _ELEVATION
 from gaitsmith.viz.shadows import draw_prints, draw_shadow
@@ -171,9 +172,13 @@ class _Scene:
         else:
             self._terrain(image, view)
         tracks = self.tracks
+        draw_floor(image, tracks.around, view)
         draw_prints(image, tracks, self.prints, frame, view, reach=1.3 * tracks.stature)
         draw_shadow(image, tracks, frame, view)
+        place = tracks.motion.root_position[frame]
+        draw_rods(image, tracks.around, view, place, tracks.stature, front=False)
         draw_figure(image, tracks.figure, tracks.positions[frame], tracks.world[frame], view)
+        draw_rods(image, tracks.around, view, place, tracks.stature, front=True)
         return image.reduce(_FINE)
 
     def _grid(self, image: Image.Image, view: Camera) -> None:

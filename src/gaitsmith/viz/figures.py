@@ -8,6 +8,7 @@ import numpy as np
 
 from gaitsmith.conventions import ahead, leftward
 from gaitsmith.viz import palette
+from gaitsmith.viz.around import BESIDE, draw_rods
 from gaitsmith.viz.canvas import Area, pairs
 from gaitsmith.viz.render import camera, draw_figure
 
@@ -55,7 +56,10 @@ def figure_row(
             scale=scale * canvas.fine,
         )
         _contact_shadows(canvas, tracks, frame, seen.axes[0], target, (middle, level), scale)
+        place, around = tracks.motion.root_position[frame], tracks.around
+        draw_rods(canvas.image, around, seen, place, stature, front=False, near=BESIDE)
         draw_figure(canvas.image, tracks.figure, tracks.positions[frame], tracks.world[frame], seen)
+        draw_rods(canvas.image, around, seen, place, stature, front=True, near=BESIDE)
     canvas.line([(area.left, area.bottom), (area.right, area.bottom)], palette.FLOOR)
 
 

@@ -15,12 +15,14 @@ from gaitsmith.ground import Flat, HeightField, Stairs, ground_from_json
 from gaitsmith.motion.kinematics import motion_kinematics, sole_positions
 from gaitsmith.skin.build import build_skin
 from gaitsmith.skin.t_pose import in_t_pose
+from gaitsmith.viz.around import surroundings_of
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
     from gaitsmith.ground import Ground
     from gaitsmith.motion.motion import Motion
+    from gaitsmith.plan.surroundings import Surroundings
     from gaitsmith.skin.mesh import SkinMesh
 
 #: Pelvis rotation and sway of a step vanish in a mean over about one stride, seconds.
@@ -121,6 +123,11 @@ class Tracks:
             riser = riser[np.abs(riser - around[2]) < reach]
             z = np.unique(np.concatenate([z, riser - 1e-6, riser + 1e-6]))
         return x, z
+
+    @cached_property
+    def around(self) -> Surroundings:
+        """What stands around, from the recipe."""
+        return surroundings_of(self.motion)
 
     @cached_property
     def surface(self) -> Ground:
