@@ -280,11 +280,23 @@ def test_a_scene_of_one_is_written_as_its_walk(tmp_path):
 
 def test_what_stands_around_goes_along(tmp_path):
     table = Obstacle(((5.0, 5.0), (6.0, 5.0), (6.0, 6.0)), "table")
-    with pytest.warns(GaitsmithWarning, match="nobody walks round it yet"):
-        made = perform(Scene((CHILD, FAR), Surroundings((table,))), fps=10.0)
+    made = perform(Scene((CHILD, FAR), Surroundings((table,))), fps=10.0)
     assert json.loads(made.surroundings)["obstacles"][0]["name"] == "table"
     gaitsmith.save(made, tmp_path / "a.npz")
     assert load_performance(tmp_path / "a.npz").surroundings == made.surroundings
+
+
+def test_everybody_walks_round_what_stands_around():
+    table = Obstacle(((-0.4, 1.5), (0.4, 1.5), (0.4, 2.0), (-0.4, 2.0)), "table")
+    scene = Scene(
+        (Walker("Ann", do="walk to 0,4"), Walker("Ben", start=Start((2.0, 0.0)), do="walk to 2,2")),
+        Surroundings((table,)),
+    )
+    made = perform(scene, fps=10.0)
+    assert np.abs(made.motions[0].root_position[:, 0]).max() > 0.7
+    assert "table" in made.motions[0].labels.recipe
+    with pytest.raises(InfeasibleError, match=r"Ann: action 1 .* inside 'table'"):
+        perform(Scene((Walker("Ann", do="walk to 0,1.8"), CHILD), Surroundings((table,))))
 
 
 def test_motions_of_other_lengths_are_no_performance():
