@@ -22,7 +22,7 @@ from gaitsmith.motion.performance import Performance
 from gaitsmith.plan.follow import curve_share, follow
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.given import GivenSteps, plan_given
-from gaitsmith.plan.pace import UNUSUAL_FROUDE, Pace, choose_pace, froude
+from gaitsmith.plan.pace import Pace, choose_pace
 from gaitsmith.plan.paths import Path as WalkPath
 from gaitsmith.plan.rhythm import Rhythm
 from gaitsmith.plan.script import Script, Tempo
@@ -33,8 +33,9 @@ from gaitsmith.synthesis.habits import own_pace, stance_of, with_habits
 from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
 from gaitsmith.synthesis.straight import StraightGenerator
+from gaitsmith.synthesis.unusual import warn_of_short_steps, warn_of_unusual
 from gaitsmith.synthesis.upper_body import Manner
-from gaitsmith.walks.generalize import LONG_STEP, check_step_length
+from gaitsmith.walks.generalize import check_step_length
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -221,7 +222,7 @@ def walk(
         usual = None if habits is None else own_pace(who, habits)
         pace = choose_pace(who, **tempo.said, usual=usual)
         check_step_length(who, pace.step_length)
-        _warn_of_unusual(who, pace.step_length, pace.speed)
+        warn_of_unusual(who, pace.step_length, pace.speed)
         return pace
 
     asked = Tempo(speed, step_length, cadence)
@@ -294,7 +295,7 @@ def walk(
         walked = walk_among(planned, prepared, who, ground, around)
     plan = walked.plan
     if step_length is not None and isinstance(where, WalkPath) and isinstance(plan, StepPlan):
-        _warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
+        warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
     motion = sample_walk(walked, who, ground, fps=fps, recipe=recipe, begin=float(begin))
     return motion if until is None else stand_on(motion, until)
 
@@ -391,40 +392,6 @@ def _generator(
         for name, gait in gaits.items()
     }
     return MixedGenerator(walking, LocalGenerator(style.walk, ground, style.overlay), others)
-
-
-def _warn_of_unusual(body: Body, step_length: float, speed: float) -> None:
-    ratio, number_ = step_length / body.leg_length, froude(body, speed)
-    if ratio > LONG_STEP:
-        warnings.warn(
-            f"steps of {step_length:.3f} m are {ratio:.2f} leg lengths: longer than people take",
-            GaitsmithWarning,
-            stacklevel=3,
-        )
-    if number_ > UNUSUAL_FROUDE:
-        warnings.warn(
-            f"{speed:.2f} m/s is Froude number {number_:.2f} for this body: nearly a run",
-            GaitsmithWarning,
-            stacklevel=3,
-        )
-
-
-def _warn_of_short_steps(plan: StepPlan, step_length: float, share: float) -> None:
-    longest = float(plan.step_lengths[1:].max())
-    if longest < step_length - 1e-6:
-        warnings.warn(
-            f"the way is too short for a full step of {step_length:.3f} m; the longest is "
-            f"{longest:.3f} m",
-            GaitsmithWarning,
-            stacklevel=3,
-        )
-    if share < 1.0 - 1e-6:
-        warnings.warn(
-            f"curves shorten steps of {step_length:.3f} m to as little as "
-            f"{share * step_length:.3f} m",
-            GaitsmithWarning,
-            stacklevel=3,
-        )
 
 
 def regenerate(recipe: Motion | str | dict[str, Any]) -> Motion:
