@@ -15,13 +15,14 @@ from gaitsmith._version import __version__
 from gaitsmith.body.files import body_from_dict, body_to_dict
 from gaitsmith.conventions import BANKINGS
 from gaitsmith.errors import GaitsmithWarning, InvalidInputError
-from gaitsmith.ground import GROUNDS
+from gaitsmith.ground import Flat, Ground, ground_from_json, read_ground
 from gaitsmith.learning import body_of, gait_from, gaits_named
 from gaitsmith.motion.holding import held
 from gaitsmith.motion.performance import Performance
 from gaitsmith.plan.follow import curve_share, follow
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.given import GivenSteps, plan_given
+from gaitsmith.plan.on_ground import on_ground
 from gaitsmith.plan.pace import Pace, choose_pace
 from gaitsmith.plan.paths import Path as WalkPath
 from gaitsmith.plan.rhythm import Rhythm
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from gaitsmith.body.body import Body
-    from gaitsmith.ground import Ground
     from gaitsmith.motion.motion import Motion
     from gaitsmith.plan.lengths import Stance
     from gaitsmith.plan.routes import Routes
@@ -87,6 +87,7 @@ def walk(
     steps: StepsLike | None = None,
     do: str | Sequence[str | Action] | None = None,
     gaits: Mapping[str, str | Path | LearnedGait | dict[str, Any]] | None = None,
+    ground: str | Path | Ground | dict[str, Any] = "flat",
     body: str | float | Path | Body = 1.75,
     gait: str | Path | LearnedGait | dict[str, Any] = "neutral",
     step_length: float | None = None,
@@ -105,7 +106,7 @@ def walk(
     until: float | None = None,
     surroundings: Surroundings | Mapping[str, Any] | None = None,
 ) -> Motion:
-    """A person who walks a distance, along a path or on given footsteps, on level ground.
+    """A person who walks a distance, along a path, on given footsteps, on any ground.
 
     Parameters
     ----------
@@ -128,6 +129,11 @@ def walk(
         Gaits that actions name (``"walk to 0,3 gait limp"``), each as ``gait``; built-in ones
         need not be told. Walks in different gaits meet in standing; feet are set as in the
         person's own gait.
+    ground
+        ``"flat"``, ``"slope:DEG"``, ``"stairs:RISE,TREAD,COUNT"``, a file of a height field or a
+        mesh (:func:`gaitsmith.ground.read_ground`), a ground, or its JSON. Distances and
+        coordinates are horizontal. Steps get shorter on slopes ([SM01] Eqs. 11-12) unless
+        ``step_length`` is given; on stairs the treads rule.
     body
         Height in meters, name of a built-in body, ``.toml`` file of measures, a clip (whose
         rig has the lengths), or a Body.
@@ -178,13 +184,14 @@ def walk(
     InvalidInputError
         If an argument is of no use, or the three of pace contradict each other.
     InfeasibleError
-        If this body cannot take such steps, or nobody walks that fast.
+        If this body cannot take such steps, or nobody walks that fast, or there is no way
+        over the ground: a step too high, a slope too steep, no place for a foot.
 
     Warns
     -----
     GaitsmithWarning
         Where the walk is possible but unusual: steps over 1.05 leg lengths, Froude number
-        over 0.4.
+        over 0.4. Where soles sink into curved ground.
 
     Examples
     --------
@@ -193,6 +200,7 @@ def walk(
     np.float64(3.0)
     """
     who = body_of(body)
+    ground = ground_of(ground)
     where, said = read_where(distance, path, steps, do)
     fps = positive("fps", fps, "frames per second")
     if not SLOWEST_FPS <= fps <= FASTEST_FPS:
@@ -234,6 +242,7 @@ def walk(
         "gaitsmith": __version__,
         "walk": {
             **said,
+            **({} if ground == Flat() else {"ground": ground.as_json()}),
             "body": body_to_dict(who),
             "gait": named,
             "step_length": step_length,
@@ -253,7 +262,6 @@ def walk(
             **({} if around.empty else {"surroundings": around.as_dict()}),
         },
     }
-    ground = GROUNDS["flat"]()
     keep = cadence is not None
     vary = Rhythm(variation=variation, seed=seed)
     rhythm = with_habits(vary, style.habits, asked)
@@ -263,7 +271,8 @@ def walk(
         if isinstance(where, Script):
             from gaitsmith.plan.director import Manners, direct  # late, as in _generator
 
-            manners = Manners(who, pace, stance, ground, rhythm, outside, keep, paced)
+            full = step_length is not None
+            manners = Manners(who, pace, stance, ground, rhythm, outside, keep, full, paced)
             in_others = {
                 name: replace(
                     manners,
@@ -274,11 +283,22 @@ def walk(
                 for name, (other, _) in others.items()
             }
             manners = replace(manners, gaits=in_others, routes=routes)
-            return direct(where.actions, manners, start if isinstance(start, Start) else None)
-        begins = "stand" if isinstance(start, Start) else start
-        return _plan(
-            where, who, pace, stance, rhythm, ground, begins, stop, keep=keep, outside=outside
+            begin_at = start if isinstance(start, Start) else None
+            return on_ground(direct(where.actions, manners, begin_at), who, ground)
+        plan = _plan(
+            where,
+            who,
+            pace,
+            stance,
+            rhythm,
+            ground,
+            "stand" if isinstance(start, Start) else start,
+            stop,
+            keep=keep,
+            keep_length=step_length is not None,
+            outside=outside,
         )
+        return on_ground(plan, who, ground)
 
     ahead = isinstance(where, WalkPath) and where.straight and not variation
     gaits_of = {name: other for name, (other, _) in others.items()}
@@ -298,6 +318,13 @@ def walk(
         warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
     motion = sample_walk(walked, who, ground, fps=fps, recipe=recipe, begin=float(begin))
     return motion if until is None else stand_on(motion, until)
+
+
+def ground_of(given: str | Path | Ground | dict[str, Any]) -> Ground:
+    """What an argument ``ground`` means: words, a file, JSON, or a ground as it is."""
+    if isinstance(given, dict):
+        return ground_from_json(given)
+    return given if isinstance(given, Ground) else read_ground(given)
 
 
 def stand_on(motion: Motion, until: float) -> Motion:
@@ -341,6 +368,7 @@ def _plan(
     stop: str,
     *,
     keep: bool,
+    keep_length: bool,
     outside: bool,
 ) -> StepPlan:
     """Footsteps along a path, or those that were given."""
@@ -350,10 +378,12 @@ def _plan(
             pace=pace,
             stance=stance,
             ground=ground,
-            body=body if outside else None,
+            body=body,
+            outside=outside,
             start=start,
             stop=stop,
             keep_cadence=keep,
+            keep_length=keep_length,
             rhythm=rhythm,
             stature=body.height,
         )
@@ -377,6 +407,11 @@ def _generator(
 
     Imports are late: who walks straight ahead waits for nothing that bends or mixes walks.
     """
+    if not isinstance(ground, Flat):
+        from gaitsmith.synthesis.uneven import UnevenGenerator
+
+        level = _generator(plan, style, Flat(), banking, ahead=ahead, gaits=gaits)
+        return UnevenGenerator(level, ground)
     if ahead:
         return StraightGenerator(style.walk, ground, style.overlay)
     from gaitsmith.synthesis.curved import CurvedGenerator

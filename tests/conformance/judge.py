@@ -1,4 +1,4 @@
-"""An independent judge of generated motions: the promises on level ground.
+"""An independent judge of generated motions: the promises, on any ground.
 
 It reads the skeleton, the rotations, the root, the flags and the labels of a motion and
 computes everything else anew; it imports no kinematics of the package.
@@ -61,6 +61,32 @@ def posed(motion):
     return positions, world, soles
 
 
+def ground_height(ground, x, z):
+    """Height of the ground of a motion's label."""
+    if ground["kind"] == "flat":
+        return np.full(x.shape, ground["height"])
+    if ground["kind"] == "slope":
+        return z * np.tan(np.radians(ground["deg"]))
+    if ground["kind"] == "stairs":
+        climbed = np.floor((z - ground["start"]) / ground["tread"] + 1e-9) + 1.0
+        return ground["rise"] * np.clip(climbed, 0.0, ground["count"])
+    height = np.reshape(ground["height"], ground["shape"])
+    u = np.clip((x - ground["origin"][0]) / ground["cell"], 0.0, height.shape[1] - 1 - 1e-9)
+    v = np.clip((z - ground["origin"][1]) / ground["cell"], 0.0, height.shape[0] - 1 - 1e-9)
+    i, j = v.astype(int), u.astype(int)
+    a, b = v - i, u - j
+    near = (1.0 - b) * height[i, j] + b * height[i, j + 1]
+    return (1.0 - a) * near + a * ((1.0 - b) * height[i + 1, j] + b * height[i + 1, j + 1])
+
+
+def over(motion, points):
+    """(3, ...) meters over the ground; beside a riser read on both sides too, 1 mm off."""
+    ground = json.loads(motion.labels.ground)
+    aside = 1e-3 if ground["kind"] == "stairs" else 0.0
+    x, y, z = np.moveaxis(points, -1, 0)
+    return np.stack([y - ground_height(ground, x, z + d) for d in (0.0, aside, -aside)])
+
+
 def runs(flags):
     """[start, stop) of each run of True."""
     return np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]]))).reshape(-1, 2)
@@ -91,9 +117,7 @@ def judge(motion):
     assert np.isfinite(motion.rotations).all()
     assert np.isfinite(motion.root_position).all()
     positions, world, soles = posed(motion)
-    ground = json.loads(motion.labels.ground)
-    assert ground["kind"] == "flat", "this judge knows level ground only"
-    above, down = soles[..., 1] - ground["height"], motion.contacts
+    above, down = over(motion, soles), motion.contacts
     return {
         **_feet(soles, above, down),
         **_legs(motion, positions, world, down),
@@ -116,7 +140,8 @@ def broken(motion, *, but=()):
     }
 
 
-def _feet(soles, above, down):
+def _feet(soles, read, down):
+    above = read.max(0)
     slip = 0.0
     for side in range(2):
         for point in range(3):
@@ -126,15 +151,48 @@ def _feet(soles, above, down):
     still = np.linalg.norm(np.diff(soles, axis=0), axis=-1) < 1e-10
     touches = np.abs(above) < 1e-10
     bears = still[1:] & still[:-1] & touches[1:-1]  # since the frame before, until the next
-    flat = down[..., HEEL] & down[..., BALL]
+    # toes that reach over an edge bear nothing
+    flat = down[..., HEEL] & down[..., BALL] & (above[..., TOE] < 0.01)
     return {
         "slip_mm": 1e3 * slip,
         "penetration_mm": 1e3 * max(0.0, -above.min()),
-        "float_mm": 1e3 * np.abs(above[down]).max(),
+        "float_mm": 1e3 * np.abs(read).min(0)[down].max(),
         "unsupported_frames": int((~down.any((1, 2))).sum()),
         "unflagged_bearing": int((bears & ~down[1:-1]).sum()),
         "flat_without_all_flags": int((flat & ~down[..., TOE]).sum()),
     }
+
+
+def along_soles(motion):
+    """(F, 2, 18) least meters of points of each sole's line over the ground, heel to toe tip."""
+    soles = posed(motion)[2]
+    share = np.linspace(0.0, 1.0, 9)[:, None]
+    parts = [
+        soles[..., [k], :] + share * (soles[..., [k + 1], :] - soles[..., [k], :]) for k in (0, 1)
+    ]
+    return over(motion, np.concatenate(parts, axis=2))
+
+
+def shins_into_ground(motion):
+    """Deepest that a shin is in the ground, meters."""
+    positions, _, _ = posed(motion)
+    deepest = 0.0
+    for side in SIDES:
+        knee, ankle = (
+            positions[:, motion.skeleton.index(side + part)] for part in ("LowerLeg", "Foot")
+        )
+        for share in np.linspace(0.0, 1.0, 17):
+            above = over(motion, knee + share * (ankle - knee)).max(0)
+            deepest = max(deepest, -above.min())
+    return deepest
+
+
+def overhang(motion):
+    """Largest share of a flat bearing sole with nothing under it."""
+    _, _, soles = posed(motion)
+    hangs = (along_soles(motion).min(0) > 0.01).mean(-1)
+    flat = motion.contacts[..., BALL] & (np.abs(soles[..., HEEL, 1] - soles[..., BALL, 1]) < 2e-3)
+    return float(hangs[flat].max(initial=0.0))
 
 
 def _legs(motion, positions, world, down):

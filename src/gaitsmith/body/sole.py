@@ -12,7 +12,7 @@ from gaitsmith.geometry.rotations import component_major
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
     from gaitsmith.body.body import Foot
 
@@ -41,11 +41,31 @@ def turned(
 
 
 def rolled_ankle(
-    foot: Foot, pitch: Float[np.ndarray, "*n"] | float, meta: Float[np.ndarray, "*n"] | float
+    foot: Foot,
+    pitch: Float[np.ndarray, "*n"] | float,
+    meta: Float[np.ndarray, "*n"] | float,
+    toes: Float[np.ndarray, "*n"] | None = None,
+    on_ball: Bool[np.ndarray, "*n"] | None = None,
 ) -> Float[np.ndarray, "*n 2"]:
-    """The ankle of :func:`roll` alone, for those who need it often."""
+    """The ankle of :func:`roll` alone, for those who need it often.
+
+    ``toes``: radians by which the toes of the flat foot are raised against its sole, where the
+    ground bends under them. ``on_ball``: whose toes hang over an edge, so that the foot rolls
+    on the ball's sole point and ``meta`` means nothing.
+    """
     pitch, meta = np.asarray(pitch, dtype=np.float64), np.asarray(meta, dtype=np.float64)
-    return _rolled(foot, pitch, meta)(0.0, foot.ankle_height)
+    ankle = _rolled(foot, pitch, meta, toes)(0.0, foot.ankle_height)
+    if on_ball is None:
+        return ankle
+    rolled = turned(-foot.ball, foot.ankle_height, pitch) + [foot.ball, 0.0]
+    return np.where((on_ball & (pitch < 0.0))[..., None], rolled, ankle)
+
+
+def hanging_toes(foot: Foot, pitch: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
+    """Bend of toes that keep level beside a ball on which the foot rolls to ``pitch`` <= 0."""
+    joint = foot.toe_joint_height
+    size, angle = np.hypot(foot.toes, joint), np.arctan2(joint, foot.toes)
+    return angle - np.arcsin(joint * np.cos(pitch) / size) - pitch
 
 
 def roll(
@@ -74,7 +94,10 @@ def roll(
 
 
 def _rolled(
-    foot: Foot, pitch: Float[np.ndarray, "*n"], meta: Float[np.ndarray, "*n"]
+    foot: Foot,
+    pitch: Float[np.ndarray, "*n"],
+    meta: Float[np.ndarray, "*n"],
+    toes: Float[np.ndarray, "*n"] | None = None,
 ) -> Callable[[float, float], Float[np.ndarray, "*n 2"]]:
     """Where the rolling foot has a point that the flat foot has at (forward, up) from N."""
     s, c = sine_cosine(pitch)
@@ -84,8 +107,16 @@ def _rolled(
     back, high = -foot.toes, foot.toe_joint_height
     sm, cm = sine_cosine(meta)
     tip = foot.ball + foot.toes
-    pivot_forward = np.where(rocker, -foot.heel, tip + back * cm + high * sm)
-    pivot_up = np.where(rocker, 0.0, high * cm - back * sm)
+    if toes is None:
+        toe_forward = tip + back * cm + high * sm
+        toe_up = high * cm - back * sm
+    else:  # tip and joint as the toes of the flat foot have them
+        ct, st = np.cos(toes), np.sin(toes)
+        x, y = back * ct - high * st, back * st + high * ct
+        toe_forward = foot.ball - x + (x * cm + y * sm)
+        toe_up = foot.toe_joint_height - y + (y * cm - x * sm)
+    pivot_forward = np.where(rocker, -foot.heel, toe_forward)
+    pivot_up = np.where(rocker, 0.0, toe_up)
     from_forward = np.where(rocker, -foot.heel, foot.ball)
     from_up = np.where(rocker, 0.0, high)
 

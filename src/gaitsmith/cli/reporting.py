@@ -19,11 +19,11 @@ def facts_of(motion: Motion, files: list[Path], said: list[str]) -> dict[str, An
 
 def motion_facts(motion: Motion) -> dict[str, Any]:
     """What there is to say of one generated motion."""
-    from gaitsmith.ground import GROUNDS
+    from gaitsmith.ground import ground_from_json
     from gaitsmith.measures.promises import promises
 
     assert motion.labels is not None
-    measured = promises(motion, GROUNDS["flat"]())
+    measured = promises(motion, ground_from_json(motion.labels.ground))
     return {
         "frames": len(motion),
         "fps": motion.fps,

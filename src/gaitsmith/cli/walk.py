@@ -45,6 +45,13 @@ def walk(
         Path | None,
         typer.Option(metavar="FILE", readable=False, help="Several walkers: a TOML file."),
     ] = None,
+    ground: Annotated[
+        str,
+        typer.Option(
+            metavar="GROUND",
+            help="flat, slope:DEG, stairs:RISE,TREAD,COUNT, or FILE.npz|.png|.obj.",
+        ),
+    ] = "flat",
     body: Annotated[
         str, typer.Option(help="Height in meters, a name of `list bodies`, FILE.toml or FILE.bvh.")
     ] = "1.75",
@@ -86,6 +93,7 @@ def walk(
             path=path,
             steps=steps,
             do=do,
+            ground=ground,
             body=body,
             gait=gait,
             step_length=step_length,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.body.leg import two_bone_ik
-from gaitsmith.body.sole import rolled_ankle
+from gaitsmith.body.sole import hanging_toes, rolled_ankle
 from gaitsmith.contact.reach import SAMPLED_REACH
 from gaitsmith.contact.step_curves import ROWS, WIDTH
 from gaitsmith.conventions import BALL, HEEL, TOE, UP
@@ -145,6 +145,8 @@ class ContactPlan:
         # a rounding error off level is level: the sign says what of the sole bears
         pitch, meta, bend = _level(read("pitch")), _level(read("meta")), read("bend")
         bend = np.where(down, np.where(pitch < 0.0, -pitch - meta, 0.0), bend)
+        if self._uneven:
+            bend = self._uneven_bend((step, phase, stance), down, pitch, bend)
         heading, foot_heading = read("heading")[0], read("foot_heading")
         pelvis = turned_left(heading, exp(read("pelvis").T))
         ankle, foot = self._feet(
@@ -178,6 +180,8 @@ class ContactPlan:
         contacts = np.empty((frames, 2, 3), dtype=np.bool_)
         for point, bears in ((HEEL, touching & (pitch >= 0.0)), (BALL, ball), (TOE, toes)):
             contacts[..., point] = bears.T
+        if self.stands.bears is not None:
+            contacts = self._borne(step, down, pitch, contacts)
         upper = read("upper").reshape((len(rows) - WIDTH) // 3, 3, frames)
         return Poses(
             center=center,
@@ -231,10 +235,17 @@ class ContactPlan:
         heading: Float[np.ndarray, "2 F"],
     ) -> tuple[Float[np.ndarray, "2 F 3"], Float[np.ndarray, "2 F 4"]]:
         """Ankles and world rotations of the feet; exact on their footholds where they bear."""
-        step, phase, stance = when
+        step = when[0]
         count = 2 if self.level else 4
         stand = [np.take(f, step, axis=2).transpose(0, 2, 1) for f in self._stands[:count]]
-        points = rolled_ankle(self.body.foot, pitch, meta)
+        toes, on_ball = self.stands.toes, self.stands.on_ball
+        points = rolled_ankle(
+            self.body.foot,
+            pitch,
+            meta,
+            None if toes is None else toes[step].T,
+            None if on_ball is None else on_ball[step].T,
+        )
         place = stand[0] + points[..., :1] * stand[1]
         if self.level:
             place[..., 1] += points[..., 1]
@@ -244,11 +255,60 @@ class ContactPlan:
         flat = pitched(heading, -pitch)
         if self.level:
             return ankle, flat
-        off = self.toe_off[step]
-        share = smoothstep((phase - off) / np.where(off < 1.0, 1.0 - off, 1.0))
-        share = np.where((stance != _BOTH) & ~down, share, 0.0)[..., None]
+        share = self._flown(when, down)[..., None]
         target = self.targets.tilt[step]
         return ankle, multiply(exp((1.0 - share) * stand[3] + share * target), flat)
+
+    def _flown(
+        self,
+        when: tuple[Int[np.ndarray, "F"], Float[np.ndarray, "F"], Int[np.ndarray, "F"]],
+        down: Bool[np.ndarray, "2 F"],
+    ) -> Float[np.ndarray, "2 F"]:
+        """How far each foot has taken on the lie of its next foothold: from toe-off on, 0 to 1."""
+        step, phase, stance = when
+        off = self.toe_off[step]
+        share = smoothstep((phase - off) / np.where(off < 1.0, 1.0 - off, 1.0))
+        return np.where((stance != _BOTH) & ~down, share, 0.0)
+
+    @cached_property
+    def _uneven(self) -> bool:
+        """Whether toes bend to the ground, or hang over an edge, anywhere."""
+        both = (self.stands, self.targets)
+        return any((f.toes is not None and f.toes.any()) or f.bears is not None for f in both)
+
+    def _uneven_bend(
+        self,
+        when: tuple[Int[np.ndarray, "F"], Float[np.ndarray, "F"], Int[np.ndarray, "F"]],
+        down: Bool[np.ndarray, "2 F"],
+        pitch: Float[np.ndarray, "2 F"],
+        bend: Float[np.ndarray, "2 F"],
+    ) -> Float[np.ndarray, "2 F"]:
+        """Toes against the sole with what the ground under them asks for."""
+        step = when[0]
+        if self.stands.on_ball is not None:
+            hangs = down & (pitch < 0.0) & self.stands.on_ball[step].T
+            bend = np.where(hangs, hanging_toes(self.body.foot, np.minimum(pitch, 0.0)), bend)
+        if self.stands.toes is None or self.targets.toes is None:
+            return bend
+        share = self._flown(when, down)
+        return bend + (1.0 - share) * self.stands.toes[step].T + share * self.targets.toes[step]
+
+    def _borne(
+        self,
+        step: Int[np.ndarray, "F"],
+        down: Bool[np.ndarray, "2 F"],
+        pitch: Float[np.ndarray, "2 F"],
+        contacts: Bool[np.ndarray, "2 F 3"],
+    ) -> Bool[np.ndarray, "2 F 3"]:
+        """``contacts`` without what hangs over an edge; there the ball bears as the foot rolls."""
+        assert self.stands.bears is not None
+        under = self.stands.bears[step].transpose(1, 0, 2)
+        rolls = down & (pitch <= 0.0) & ~under[..., TOE]
+        if self.targets.bears is not None:  # a walk that ends with a heel strike
+            under = np.where(down[..., None], under, self.targets.bears[step])
+        out = contacts & under
+        out[..., BALL] |= rolls
+        return out
 
 
 def _level(angle: Float[np.ndarray, "2 F"]) -> Float[np.ndarray, "2 F"]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.body.sole import SolePose, rolled_ankle
-from gaitsmith.conventions import UP, ahead
+from gaitsmith.conventions import TOE, UP, ahead
 from gaitsmith.geometry.angles import sine_cosine
 from gaitsmith.geometry.rotations import (
     about,
@@ -21,7 +21,7 @@ from gaitsmith.geometry.rotations import (
 )
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
     from gaitsmith.body.body import Foot
     from gaitsmith.ground import Ground
@@ -38,12 +38,19 @@ class Footholds:
     tilt
         ``(*n, 3)`` rotation vector, world: how a level foot of this heading is tilted to lie
         on the plane; all zero on level ground.
+    toes
+        ``(*n,)`` radians by which the toes of the flat foot are raised against its sole so that
+        their tip touches; None: nowhere.
+    bears
+        ``(*n, 3)`` whether there is ground under heel, ball and toe tip; None: everywhere.
     """
 
     position: Float[np.ndarray, "*n 3"]
     forward: Float[np.ndarray, "*n 3"]
     normal: Float[np.ndarray, "*n 3"]
     tilt: Float[np.ndarray, "*n 3"]
+    toes: Float[np.ndarray, "*n"] | None = None
+    bears: Bool[np.ndarray, "*n 3"] | None = None
 
     def at(self, index: object) -> Footholds:
         """The footholds that NumPy index ``index`` picks, each component contiguous."""
@@ -56,7 +63,14 @@ class Footholds:
                 out[..., i] = np.take(field[..., i], which)
             return out
 
-        return Footholds(*map(picked, (self.position, self.forward, self.normal, self.tilt)))
+        fields = map(picked, (self.position, self.forward, self.normal, self.tilt))
+        more = (None if f is None else f[index] for f in (self.toes, self.bears))  # type: ignore[index]
+        return Footholds(*fields, *more)
+
+    @property
+    def on_ball(self) -> Bool[np.ndarray, "*n"] | None:
+        """Where the toes hang over an edge; None: nowhere."""
+        return None if self.bears is None else ~self.bears[..., TOE]
 
     def place(self, points: Float[np.ndarray, "*n 2"]) -> Float[np.ndarray, "*n 3"]:
         """World position of sagittal points ``(forward, up)`` from N."""
@@ -69,7 +83,7 @@ class Footholds:
         meta: Float[np.ndarray, "*n"] | float,
     ) -> Float[np.ndarray, "*n 3"]:
         """World position of the ankle of a foot that stands here."""
-        return self.place(rolled_ankle(foot, pitch, meta))
+        return self.place(rolled_ankle(foot, pitch, meta, self.toes, self.on_ball))
 
 
 def footholds(

@@ -7,10 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.contact.apply import ContactPlan
-from gaitsmith.contact.foothold import Footholds, footholds, sole_in_air
+from gaitsmith.contact.clearing import cleared
+from gaitsmith.contact.flights import Flights
+from gaitsmith.contact.foothold import Footholds, sole_in_air
 from gaitsmith.contact.reach import (
     REAR_REACH,
     REAR_SLACK,
+    SPREAD,
+    UNEVEN_SPREAD,
     check_reach,
     drawn_near,
     lengths,
@@ -18,11 +22,13 @@ from gaitsmith.contact.reach import (
     raised_heel,
 )
 from gaitsmith.contact.reference import Proposal, ReferenceStep, stack
+from gaitsmith.contact.standing import standing
 from gaitsmith.contact.step_curves import FINEST
 from gaitsmith.conventions import LEFT, RIGHT
 from gaitsmith.geometry.angles import sine_cosine
 from gaitsmith.geometry.curves import parabola_slopes, smoothstep
 from gaitsmith.geometry.rotations import exp, left_of, turned_left
+from gaitsmith.ground import Flat
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,6 +51,8 @@ RAISE_FADES = 0.6
 LEAVING = 0.2
 #: Curves of one sole.
 SOLE = ("pitch", "meta", "bend")
+#: Part of the swing over which toes that hung over an edge straighten.
+STRAIGHTENED = 0.5
 
 
 def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> ContactPlan:
@@ -65,10 +73,14 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
         If a leg cannot reach its foothold.
     """
     walk = stack(steps)
-    stands = footholds(walk.foothold, walk.foothold_heading, ground)
-    targets = footholds(walk.target, walk.target_heading, ground)
+    stands = standing(walk.foothold, walk.foothold_heading, ground, body.foot)
+    targets = standing(walk.target, walk.target_heading, ground, body.foot)
     down = walk.bearing()
     hip = _hips(walk, body)
+    if stands.on_ball is not None:  # no toes to stand on the tip of
+        node, side = np.nonzero(down)
+        hangs = stands.on_ball[walk.step[node], side]
+        walk.curves["meta"][node[hangs], side[hangs]] = 0.0
     _lock(walk, body, stands, down)
     # a foot that leaves from its heel, as in a step back, has no heel to raise
     rear = _rear(walk, down) & (walk.curves["pitch"] <= 1e-6)
@@ -81,7 +93,8 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
         last = walk.landing.pitch[-1]
         ankle[-1, swing] = targets.at(-1).ankle(body.foot, last, 0.0)
         slack[-1, swing] = 0.0
-    down_by = lowering(walk.at, hip, ankle, slack, leg_length=body.leg_length)
+    spread = SPREAD if isinstance(ground, Flat) else UNEVEN_SPREAD
+    down_by = lowering(walk.at, hip, ankle, slack, leg_length=body.leg_length, spread=spread)
     walk.curves["center"][:, 1] -= down_by
     hip[..., 1] -= down_by[:, None]
     extra = _rear_raise(walk, body, stands, rear, hip)
@@ -250,16 +263,31 @@ def _swing(
     )
     pitch += np.repeat(land_pitch - walk.landing.pitch[steps], count) * w
 
+    if start.on_ball is not None:  # toes that hung over an edge are bent more as they leave
+        bent = np.maximum(-pitch[first] - meta[first], 0.0)
+        gone = 1.0 - smoothstep(at / STRAIGHTENED)
+        bend = bend + np.repeat(np.where(start.on_ball, bent - bend[first], 0.0), count) * gone
+
     swing = np.array([*ankle.T, pitch, bend])
     swing += _leaving_speed(walk, side, node, first, swing.T).T
     ankle, (pitch, bend) = swing[:3].T, swing[3:]
-    heights = _heights(body, ground, ankle, pitch, bend, heading)
-    lift = _clearance(heights, at)
-    landed = _heights(
-        body, ground, end, land_pitch, curves["bend"][strike], walk.target_heading[steps]
-    )
-    dips = _dips(walk.at[node], heights + lift[:, None], first, steps + 1.0, landed)
-    ankle[:, 1] += lift + dips * (at > 0.0)
+    if isinstance(ground, Flat):
+        heights = _heights(body, ground, ankle, pitch, bend, heading)
+        lift = _clearance(heights, at)
+        landed = _heights(
+            body, ground, end, land_pitch, curves["bend"][strike], walk.target_heading[steps]
+        )
+        dips = _dips(walk.at[node], heights + lift[:, None], first, steps + 1.0, landed)
+        ankle[:, 1] += lift + dips * (at > 0.0)
+    else:
+        faces, bent = walk.target_heading[steps], curves["bend"][strike]
+        flights = Flights.of(
+            (first, at, walk.at[node]),
+            np.column_stack([ankle, heading, pitch, bend, hip[node]]),
+            (steps + 1.0, np.column_stack([end, faces, land_pitch, bent, hip[strike]])),
+            (start, targets.at(steps)),
+        )
+        ankle, heading, pitch, bend = cleared(flights, body, ground)
     reach = [
         np.repeat(lengths(hip[which] - foot_at), count)
         for which, foot_at in ((node[first], ankle[first]), (strike, end))

@@ -35,6 +35,8 @@ SAMPLED_REACH = 0.99953
 LIMIT = 0.9997
 #: Grid on which the lowering is found, and over what part of a step it is spread.
 PER_STEP, SPREAD = 60, 0.12
+#: The same on ground that is not level, where the hips come down farther.
+UNEVEN_SPREAD = 0.28
 #: How much nearer the rear ankle may come by raising its heel, at toe-off, over leg length.
 REAR_SLACK = 0.14
 #: Largest extra rise of the rear heel, radians, and the least, with which a flat foot rolls.
@@ -56,8 +58,9 @@ def lowering(
     slack: Float[np.ndarray, "M 2"],
     *,
     leg_length: float,
+    spread: float = SPREAD,
 ) -> Float[np.ndarray, "M"]:
-    """How far the hips must come down at each node, meters, smooth over a quarter of a step.
+    """How far the hips must come down at each node, meters, smooth over twice ``spread`` steps.
 
     Parameters
     ----------
@@ -97,7 +100,7 @@ def lowering(
     where = at * PER_STEP - first
     for cell in (np.floor(where).astype(int), np.ceil(where).astype(int)):
         np.maximum.at(cells, cell, need)
-    half = int(np.ceil(SPREAD * PER_STEP))
+    half = int(np.ceil(spread * PER_STEP))
     smooth = hann_average(running_maximum(cells, half), half)
     grid = np.arange(len(cells), dtype=np.float64)
     return _cubic(grid, smooth, where)

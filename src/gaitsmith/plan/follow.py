@@ -7,7 +7,7 @@ out over it as over a straight line, so that on a straight path nothing changes 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +15,9 @@ import numpy as np
 from gaitsmith._checks import one_of
 from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, leftward
 from gaitsmith.errors import InfeasibleError, InvalidInputError
+from gaitsmith.ground import Flat
 from gaitsmith.plan.course import course_change, course_gaze, course_lean, lean_lever
+from gaitsmith.plan.footholds import tread, treads_near
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.lengths import (
     EASED_DURATION,
@@ -25,6 +27,7 @@ from gaitsmith.plan.lengths import (
     stride_lengths,
 )
 from gaitsmith.plan.rhythm import Rhythm
+from gaitsmith.plan.slopes import slope_along, speed_share, step_length_share
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -54,11 +57,15 @@ CELL = 0.02
 
 @dataclass(frozen=True, eq=False)
 class _Stretch:
-    """Arc length and stretched arc length side by side, and the slowing on the way."""
+    """Arc length and stretched arc length side by side, and the slowing on the way.
+
+    ``lasting``: how much longer than on the level steps take for the slope; None: level.
+    """
 
     along: Float[np.ndarray, "K"]
     stretched: Float[np.ndarray, "K"]
     slowing: Float[np.ndarray, "K"]
+    lasting: Float[np.ndarray, "K"] | None = None
 
     @property
     def whole(self) -> float:
@@ -80,9 +87,11 @@ def follow(
     stance: Stance,
     ground: Ground,
     body: Body | None = None,
+    outside: bool = True,
     start: str = "stand",
     stop: str = "stand",
     keep_cadence: bool = False,
+    keep_length: bool = False,
     rhythm: Rhythm | None = None,
     stature: float = 1.75,
     first: int = RIGHT,
@@ -101,13 +110,17 @@ def follow(
     ground
         Gives the height of every footstep.
     body
-        Who leans into curves: the feet are set so far outside that the hips stay over the
-        path. None: they are set on both sides of the path, as [KB92a] does.
+        Whose feet are set; None: on level ground any.
+    outside
+        The body leans into curves: the feet are set so far outside that the hips stay over the
+        path. Else they are set on both sides of the path, as [KB92a] does.
     start, stop
         ``"stand"``: feet side by side, the middle of both N on the end point. ``"walk"``: frame
         0 is a heel strike at the first point; the end is the last heel strike on the path.
     keep_cadence
-        Slow down in curves by shorter steps alone.
+        Slow down in curves, and on slopes, by shorter steps alone.
+    keep_length
+        Steps do not get shorter on slopes ([SM01] Eqs. 11-12).
     rhythm
         What makes steps unequal; None: nothing. Those that start, stop or fit the end are left
         as they are, and the way is kept.
@@ -132,9 +145,26 @@ def follow(
         )
     power = 1.0 if keep_cadence else LENGTH_SHARE
     stretch = _stretch(path, pace.step_length, power, legs)
+    if not isinstance(ground, Flat):
+        stretch = _sloping(stretch, path, ground, pace.step_length, keep_length=keep_length)
     rhythm = rhythm or Rhythm()
-    lengths, real = _landings(path, stretch, pace.step_length, start, stop, rhythm)
-    kinds: list[StepKind] = ["walk"] * len(lengths)
+    trodden = None
+    if body is not None and treads_near(path, stance, ground, body):
+        share = np.diff(stretch.along) / np.diff(stretch.stretched)
+        trodden = tread(
+            path,
+            length=pace.step_length,
+            stance=stance,
+            ground=ground,
+            body=body,
+            stop=stop,
+            first=first,
+            share=share,
+        )
+        real = trodden.along
+    else:
+        real = _landings(path, stretch, pace.step_length, start, stop, rhythm)[1]
+    kinds: list[StepKind] = ["walk"] * (len(real) - 1)
     if start == "stand":
         kinds[0] = "start"
         along = np.concatenate([[0.0], real])
@@ -150,6 +180,10 @@ def follow(
         eased = eased * legs.duration_at(middle)
     if power < 1.0 and len(stretch.along) > 2:
         eased = eased * np.interp(middle, stretch.along, stretch.slowing) ** (power - 1.0)
+        if stretch.lasting is not None and (trodden is None or not ground.stepped):
+            eased = eased * np.interp(middle, stretch.along, stretch.lasting)
+    if trodden is not None and ground.stepped and not keep_cadence:
+        eased[: len(trodden.lasting)] *= trodden.lasting
     # the first to land is the right one; so mid-walk it is the rear one
     side = np.arange(len(along)) % 2
     side[2:] = 1 - side[2:]
@@ -165,12 +199,16 @@ def follow(
     shown = np.linspace(float(min(along[0], 0.0)), path.length, count)
     lean, drawn_in = _lean(path, along, time, pace, start), 0.0
     middle = path.at(along)
-    if body is not None and lean.any():
-        outside = leftward(direction)[:, [0, 2]]
-        middle = middle - (lean_lever(body) * lean)[:, None] * outside
+    if trodden is not None:
+        lean = np.zeros(len(along))  # feet are where there is ground for them
+    if body is not None and outside and lean.any():
+        beyond = leftward(direction)[:, [0, 2]]
+        middle = middle - (lean_lever(body) * lean)[:, None] * beyond
         # the feet's own line comes in from outside as the lean goes; the hips stay on the path
         drawn_in = np.arctan(lean_lever(body) * course_change(lean, middle))
-    width = stance.width + _widening(direction, kinds, stance)
+    width = np.full(len(along), stance.width)
+    if trodden is None:
+        width = stance.width + _widening(direction, kinds, stance)
     position = np.stack([middle[:, 0], np.zeros(len(along)), middle[:, 1]], axis=-1)
     steady[-2:] &= stop == "walk"  # both feet stand where the way ends
     beside = 0.5 * width + _aside(rhythm, stance, stature, np.append([False, False], steady))
@@ -256,6 +294,22 @@ def _stretch(path: Path, length: float, power: float, legs: Legs | None = None) 
     return _of_share(s, np.maximum(share, SHORTEST * own), slowing)
 
 
+def _sloping(
+    stretch: _Stretch, path: Path, ground: Ground, length: float, *, keep_length: bool
+) -> _Stretch:
+    """``stretch`` with the share that slopes leave of a step, and the time they add."""
+    nodes = int(np.ceil(path.length / CELL)) + 1
+    s = stretch.along if len(stretch.along) > 2 else np.linspace(0.0, path.length, nodes)
+    slope = slope_along(path, ground, s, length)
+    own = np.ones(len(s)) if keep_length else step_length_share(slope)
+    slowing = np.interp(s, stretch.along, stretch.slowing)
+    curve = np.ones(len(s))
+    if len(stretch.along) > 2:
+        curve = 1.0 / np.maximum(np.gradient(stretch.stretched, s), 1e-9)
+    out = _of_share(s, np.maximum(curve * own, SHORTEST), slowing)
+    return replace(out, lasting=own / speed_share(slope))
+
+
 def _of_share(s: np.ndarray, share: np.ndarray, slowing: np.ndarray) -> _Stretch:
     """``share``: step length over the usual one at each node."""
     more = 0.5 * (1.0 / share[1:] + 1.0 / share[:-1]) * np.diff(s)
@@ -273,7 +327,7 @@ def _denser(
         share = np.where(here, 0.8 * share, share)
         if share[here].min(initial=1.0) < SHORTEST / 2.0:
             raise _too_sharp(path, float(real[i]), float(real[i + 1]))
-    return _of_share(s, share, stretch.slowing)
+    return replace(_of_share(s, share, stretch.slowing), lasting=stretch.lasting)
 
 
 def _too_sharp(path: Path, first: float, last: float) -> InfeasibleError:

@@ -11,6 +11,7 @@ from gaitsmith._checks import frozen_array
 from gaitsmith.conventions import SIDE_SIGN, SIDES, ahead, leftward
 from gaitsmith.errors import InfeasibleError, InvalidInputError
 from gaitsmith.geometry.planar import feet_apart
+from gaitsmith.ground import foot_plane
 from gaitsmith.plan.course import course_curvature, course_pieces
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.lengths import EASED_DURATION, MOST_STEPS
@@ -101,13 +102,15 @@ def plan_given(given: GivenSteps, *, body: Body, pace: Pace, ground: Ground) -> 
     direction[0] += 0.5 * heading[1]
     direction[-1] += 0.5 * heading[-2]
     x, z = given.place[:, 0], given.place[:, 1]
-    level = ground.height(x, z)
+    foot = body.foot
+    stands = foot_plane(ground, given.place, heading, heel=foot.heel, ball=foot.ball)
+    level = stands.position[:, 1]
     if given.height is not None:
         off = np.abs(given.height - level)
         if (off > ON_GROUND).any():
             i = int(off.argmax())
             raise InvalidInputError(
-                f"footstep {i + 1}: y is {given.height[i]:g} m, the ground there is at "
+                f"footstep {i + 1}: y is {given.height[i]:g} m, a foot that stands there has it at "
                 f"{level[i]:g} m; leave the column out to stand on the ground"
             )
     position = np.stack([x, level, z], axis=-1)

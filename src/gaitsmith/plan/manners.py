@@ -31,6 +31,7 @@ class Manners:
     rhythm: Rhythm | None = None
     outside: bool = True
     keep_cadence: bool = False
+    keep_length: bool = False
     paced: Callable[[Tempo], Pace] | None = None
     gaits: Mapping[str, Manners] | None = None
     routes: Routes | None = None
@@ -55,6 +56,12 @@ class Manners:
         if tempo is None or not tempo.said:
             return self.keep_cadence
         return tempo.cadence is not None
+
+    def keeps_length(self, tempo: Tempo | None) -> bool:
+        """Whether the steps of an action do not get shorter on slopes."""
+        if tempo is None or not tempo.said:
+            return self.keep_length
+        return tempo.step_length is not None
 
 
 def gait_of(tempo: Tempo | None) -> str | None:

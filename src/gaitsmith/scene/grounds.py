@@ -5,19 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from gaitsmith.errors import InvalidInputError
-
-#: Grounds that a scene may name.
-KNOWN = ("flat",)
+from gaitsmith.ground import read_ground
 
 
 def checked_ground(text: object) -> str:
-    """``text`` if it names a ground."""
-    if not isinstance(text, str) or text not in KNOWN:
-        raise InvalidInputError(f"ground must be {' or '.join(KNOWN)}, got {text!r}")
+    """``text`` if it is a ground: words, or a file that is there."""
+    if not isinstance(text, str):
+        raise InvalidInputError(f"ground must be text as in 'slope:10', got {text!r}")
+    read_ground(text)
     return text
 
 
 def ground_arguments(text: str) -> dict[str, Any]:
     """What :func:`gaitsmith.walk` is told of the ground; of level ground nothing."""
-    checked_ground(text)
-    return {}
+    return {} if text == "flat" else {"ground": checked_ground(text)}

@@ -1,0 +1,133 @@
+"""Plans put on the ground: how high every footstep is, and whether a foot can stand there."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.conventions import SIDES
+from gaitsmith.errors import GaitsmithWarning, InfeasibleError
+from gaitsmith.ground import Flat
+from gaitsmith.plan.footholds import HIGHEST, SHORT_TREADS, STEEPEST
+from gaitsmith.plan.footing import footing
+from gaitsmith.plan.footsteps import StepPlan
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.ground import Ground
+    from gaitsmith.plan.footsteps import Footstep, PlannedStep
+    from gaitsmith.plan.timeline import Timeline
+
+#: Soles that sink in deeper than this between their bearing points are spoken of, meters.
+SINKS = 0.0005
+
+
+def on_ground(plan: StepPlan | Timeline, body: Body, ground: Ground) -> StepPlan | Timeline:
+    """``plan`` with the heights that ``ground`` gives its footsteps; itself on level ground.
+
+    N is where a foot whose heel and ball touch has it.
+
+    Raises
+    ------
+    InfeasibleError
+        Naming the footstep, the place, what it needs and the limit, where no foot can stand, or
+        a step is too high.
+
+    Warns
+    -----
+    GaitsmithWarning
+        Where the ground is curved under a sole, which is stiff.
+    """
+    if isinstance(ground, Flat):
+        return plan
+    if isinstance(plan, StepPlan):
+        height = _heights(plan.position, plan.heading, plan.side, body, ground)
+        position = np.array(plan.position)
+        position[:, 1] = height
+        rises = np.abs(np.diff(height))
+        rises[0] = 0.0
+        if ground.stepped:
+            _check_rises(rises, position[1:], body)
+        return replace(plan, position=position)
+    return _timeline(plan, body, ground)
+
+
+def _timeline(plan: Timeline, body: Body, ground: Ground) -> Timeline:
+    named = ("stance", "origin", "target", "before", "following")
+    feet = {id(f): f for s in plan.planned for n in named if (f := getattr(s, n)) is not None}
+    each = list(feet.values())
+    place = np.array([f.position for f in each])
+    heading, side = np.array([f.heading for f in each]), np.array([f.side for f in each])
+    place[:, 1] = _heights(place, heading, side, body, ground)
+    new = {id(f): replace(f, position=p) for f, p in zip(each, place, strict=True)}
+
+    def moved(foot: Footstep | None) -> Footstep | None:
+        return None if foot is None else new[id(foot)]
+
+    def lifted(step: PlannedStep) -> PlannedStep:
+        return replace(step, **{n: moved(getattr(step, n)) for n in named})
+
+    planned = tuple(lifted(s) for s in plan.planned)
+    rises = np.array([abs(float(s.target.position[1] - s.stance.position[1])) for s in planned])
+    if ground.stepped:
+        _check_rises(rises, np.array([s.target.position for s in planned]), body)
+    return replace(plan, planned=planned)
+
+
+def _heights(
+    position: Float[np.ndarray, "N 3"],
+    heading: Float[np.ndarray, "N"],
+    side: np.ndarray,
+    body: Body,
+    ground: Ground,
+) -> Float[np.ndarray, "N"]:
+    """Heights of N; refuses places where no foot stands."""
+    found = footing(ground, position[:, [0, 2]], heading, body.foot)
+    steep = found.slope > np.tan(STEEPEST)
+    bad = steep | ~found.stands | (found.hangs > SHORT_TREADS)
+    if bad.any():
+        i = int(bad.argmax())
+        what = (
+            f"footstep {i + 1} ({SIDES[side[i]]}) at ({position[i, 0]:.2f}, {position[i, 2]:.2f})"
+        )
+        if steep[i]:
+            raise InfeasibleError(
+                f"{what}: the ground slopes by {np.degrees(np.arctan(found.slope[i])):.0f} deg, "
+                f"more than the {np.degrees(STEEPEST):.0f} deg that can be walked on; lead the "
+                "way round it"
+            )
+        if found.stands[i]:
+            raise InfeasibleError(
+                f"{what}: {100 * found.hangs[i]:.0f} % of the sole would hang over an edge, more "
+                f"than {100 * SHORT_TREADS:.0f} %; set it farther from the edge"
+            )
+        raise InfeasibleError(
+            f"{what}: a foot of {body.foot.length:.2f} m cannot stand there: an edge or a bump is "
+            "under its ball or in its way; set it elsewhere"
+        )
+    if (deepest := float(found.sinks.max())) > SINKS:
+        warnings.warn(
+            f"the ground is curved: soles, which are stiff, sink in by up to {1e3 * deepest:.1f} "
+            "mm between heel and ball",
+            GaitsmithWarning,
+            stacklevel=4,
+        )
+    return found.height
+
+
+def _check_rises(
+    rises: Float[np.ndarray, "n"], targets: Float[np.ndarray, "n 3"], body: Body
+) -> None:
+    limit = HIGHEST * body.leg_length
+    if (rises > limit + 1e-9).any():
+        i = int(rises.argmax())
+        raise InfeasibleError(
+            f"the step to ({targets[i, 0]:.2f}, {targets[i, 2]:.2f}) rises or drops by "
+            f"{rises[i]:.2f} m, more than the {limit:.2f} m that this body steps at once; lead "
+            "the way round, or make it lower"
+        )

@@ -1,0 +1,339 @@
+"""Any walker on any ground: it walks level, and is lifted onto the ground step by step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaitsmith.body.rig import spine_names
+from gaitsmith.contact import StepCurves
+from gaitsmith.contact.standing import standing
+from gaitsmith.conventions import HEEL, LOCAL_KINDS, ahead
+from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.geometry.rotations import exp, log, multiply
+from gaitsmith.synthesis.overlay import upper_joints
+from gaitsmith.synthesis.step import BatchGenerator, PreparedStep, TabledStep, WalkerState
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jaxtyping import Bool, Float
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.contact import ReferenceStep
+    from gaitsmith.ground import Ground
+    from gaitsmith.plan.footsteps import Footstep, PlannedStep
+    from gaitsmith.synthesis.step import StepGenerator
+
+#: Lean of the trunk over the slope: forward uphill (0.5-0.8), backward downhill (0.1-0.3);
+#: the pelvis has half of it.
+LEAN_UP, LEAN_DOWN, PELVIS_SHARE = 0.6, 0.2, 0.5
+#: Part of the pitch of a landing sole that a slope (rise per meter) takes away uphill: midfoot
+#: contact from about 15 deg.
+MOST_FLAT, FLAT_SLOPE = 0.85, 0.27
+#: Rises over the leg: a foot lands flat on a step up of this; down, heel first up to the first,
+#: ball first from the second on (kerbs and drops: 5-15 cm, 25 cm), with soles so steep.
+FLAT_RISE, HEEL_FIRST, BALL_FIRST, TOES_DOWN = 0.08, 0.10, 0.20, float(np.radians(17.0))
+#: A sole that would land flatter lands flat.
+NEARLY_FLAT = float(np.radians(2.5))
+#: Part of the step in which a heel comes down after the ball.
+HEEL_DOWN = 0.3
+#: The heel that stays above on a deep step comes up so much more (radians), from this phase on.
+HEEL_UP, HEEL_RISES = float(np.radians(18.0)), 0.4
+#: A lower rise (m) is no step.
+LEAST_STEP = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Lie:
+    """How the ground lies at k footsteps, as the walker takes it.
+
+    Attributes
+    ----------
+    place
+        ``(k, 2)`` x,z beside the footstep on the walk's line.
+    level
+        ``(k,)`` meters there.
+    gradient
+        ``(k, 2)`` rise per meter along x and z.
+    slope
+        ``(k,)`` rise per meter along the walk.
+    rise
+        ``(k,)`` meters from the footstep before, of the other foot.
+    stepped
+        ``(k,)`` whether an edge lies between them.
+    heel_hangs
+        ``(k,)`` whether there is no ground under the heel.
+    """
+
+    place: Float[np.ndarray, "k 2"]
+    level: Float[np.ndarray, "k"]
+    gradient: Float[np.ndarray, "k 2"]
+    slope: Float[np.ndarray, "k"]
+    rise: Float[np.ndarray, "k"]
+    stepped: Bool[np.ndarray, "k"]
+    heel_hangs: Bool[np.ndarray, "k"]
+
+    def plane(self, i: int, at: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n"]:
+        """Height over x,z ``at`` of the plane through footstep ``i``."""
+        return self.level[i] + (at - self.place[i]) @ self.gradient[i]
+
+
+class UnevenGenerator:
+    """Walks on ``ground`` with any generator that walks on a level floor.
+
+    Parameters
+    ----------
+    inner
+        Asked for the same steps, all footsteps level.
+    ground
+        What is walked on.
+    """
+
+    def __init__(self, inner: StepGenerator, ground: Ground) -> None:
+        self._inner, self._ground = inner, ground
+
+    def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
+        """See :meth:`gaitsmith.synthesis.step.StepGenerator.prepare`."""
+        return self.prepare_all(body, state, [step])[0]
+
+    def prepare_all(
+        self, body: Body, state: WalkerState, steps: Sequence[PlannedStep]
+    ) -> list[PreparedStep]:
+        """See :meth:`gaitsmith.synthesis.step.BatchGenerator.prepare_all`."""
+        level = _levelled(steps)
+        if isinstance(self._inner, BatchGenerator):
+            prepared = self._inner.prepare_all(body, state, level)
+        else:
+            prepared = []
+            for step in level:
+                prepared.append(self._inner.prepare(body, state, step))
+                state = prepared[-1].end
+        feet = list({id(f): f for s in steps for f in _feet(s)}.values())
+        number = {id(f): i for i, f in enumerate(feet)}
+        lie = _lie(steps, feet, number, body, self._ground)
+        out: list[PreparedStep] = []
+        for step, done in zip(steps, prepared, strict=True):
+            pick = [number[id(f)] for f in (step.origin, step.stance, step.target)]
+            reference = _lifted(step, done.reference, lie, pick, body)
+            out.append(TabledStep(step.duration, done.end, reference, body, self._ground))
+        return out
+
+
+def _feet(step: PlannedStep) -> list[Footstep]:
+    return [step.origin, step.stance, step.target]
+
+
+def _levelled(steps: Sequence[PlannedStep]) -> list[PlannedStep]:
+    """The same steps on a floor at height 0."""
+    flat: dict[int, Footstep] = {}
+
+    def on_floor(foot: Footstep | None) -> Footstep | None:
+        if foot is None:
+            return None
+        if id(foot) not in flat:
+            place = np.array(foot.position)
+            place[1] = 0.0
+            flat[id(foot)] = replace(foot, position=place)
+        return flat[id(foot)]
+
+    names = ("stance", "origin", "target", "before", "following")
+    return [replace(s, **{n: on_floor(getattr(s, n)) for n in names}) for s in steps]
+
+
+def _lie(
+    steps: Sequence[PlannedStep],
+    feet: Sequence[Footstep],
+    number: dict[int, int],
+    body: Body,
+    ground: Ground,
+) -> Lie:
+    """Levels beside the footsteps; slopes from one footstep to the next but one."""
+    position = np.array([f.position for f in feet])
+    stands = standing(position, np.array([f.heading for f in feet]), ground, body.foot)
+    own = -stands.normal[:, [0, 2]] / stands.normal[:, 1:2]
+    place = np.array([f.middle for f in feet])
+    level = position[:, 1] + ((place - position[:, [0, 2]]) * own).sum(-1)
+    way = ahead(np.array([f.direction for f in feet]))[:, [0, 2]]
+    slope = (own * way).sum(-1)
+    # feet side by side: one level, between them
+    for step in steps:
+        pair = {"start": (step.origin, step.stance), "stop": (step.stance, step.target)}
+        for kind, two in pair.items():
+            if step.kind == kind:
+                both = [number[id(f)] for f in two]
+                level[both], slope[both] = level[both].mean(), slope[both].mean()
+    for step in steps:
+        if step.kind in LOCAL_KINDS:
+            continue
+        a, b, c = (number[id(f)] for f in _feet(step))
+        back, on = (float(((place[j] - place[i]) * way[b]).sum()) for i, j in ((a, b), (b, c)))
+        if back > 1e-6 and on > 1e-6:  # the parabola through three levels
+            d0, d1 = (level[b] - level[a]) / back, (level[c] - level[b]) / on
+            slope[b] = (on * d0 + back * d1) / (back + on)
+    across = own - (own * way).sum(-1, keepdims=True) * way
+    rise, stepped = np.zeros(len(feet)), np.zeros(len(feet), dtype=np.bool_)
+    for step in steps:
+        b, c = (number[id(f)] for f in _feet(step)[1:])
+        rise[c] = position[c, 1] - position[b, 1]
+    if ground.stepped:
+        stepped = np.abs(rise) > LEAST_STEP
+    hangs = np.zeros_like(stepped) if stands.bears is None else ~stands.bears[:, HEEL]
+    return Lie(place, level, slope[:, None] * way + across, slope, rise, stepped, hangs)
+
+
+def _lifted(
+    step: PlannedStep, reference: ReferenceStep, lie: Lie, pick: list[int], body: Body
+) -> ReferenceStep:
+    """``reference``, which is level, on the ground."""
+    curves = reference.curves
+    at = curves.center[:, [0, 2]] + reference.origin[[0, 2]]
+    base, slope = _base(step, lie, pick, at, curves.phase)
+    lifted = StepCurves.trusted(curves.phase, np.array(curves.table))
+    lifted.center[:, 1] += base
+    lifted.ankle[..., 1] += base[:, None]
+    lifted.pitch[:], lifted.bend[:] = _landing(reference, lie, pick, body)
+    lifted.pelvis[:], lifted.upper[:] = leaning(body, curves.pelvis, curves.upper, _lean(slope))
+    foothold = np.array(reference.foothold)
+    for foot in (step.origin, step.stance):
+        foothold[foot.side] = foot.position
+    return reference.with_(
+        curves=lifted,
+        foothold=foothold,
+        target=step.target.position,
+    )
+
+
+def _landing(
+    reference: ReferenceStep, lie: Lie, pick: list[int], body: Body
+) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T 2"]]:
+    """Pitch of the soles and bend of the toes with feet that land as the ground asks for.
+
+    A sole lands flatter uphill (the foot is as it was in space), flat on a step up, and ball
+    first on a deep step down; then the heel comes down in the loading of the leg.
+    """
+    _, stance, target = pick
+    side, curves, phase = reference.stance, reference.curves, reference.curves.phase
+    pitch, bend = np.array(curves.pitch), np.array(curves.bend)
+    own = pitch[:, side]
+    lands = float(own[0])
+    wanted = _landing_pitch(lands, lie, stance, body)
+    own = np.where(own > 0.0, own * (max(wanted, 0.0) / lands if lands > 0.0 else 1.0), own)
+    if wanted < min(lands, 0.0):
+        own += (wanted - min(lands, 0.0)) * (1.0 - smoothstep(phase / HEEL_DOWN))
+        bend[:, side] = np.maximum(-own - curves.meta[:, side], bend[:, side])
+    pitch[:, side] = own
+    # going down, the heel that stays behind comes up before the other foot is down
+    rises = _heel_rise(lie, target, body) * smoothstep((phase - HEEL_RISES) / (1.0 - HEEL_RISES))
+    pitch[:, side] -= rises
+    bend[:, side] += rises
+    stayed = min(reference.toe_off, 1.0)
+    falls = _heel_rise(lie, stance, body) * (1.0 - smoothstep(phase / stayed))
+    falls = np.where(phase <= stayed, falls, 0.0)
+    pitch[:, 1 - side] -= falls
+    bend[:, 1 - side] += falls
+    if reference.toe_off < 1.0:
+        u = (phase - reference.toe_off) / (1.0 - reference.toe_off)
+        share = smoothstep((u - 0.3) / 0.7)
+        lands = float(pitch[-1, 1 - side])
+        wanted = _landing_pitch(lands, lie, target, body)
+        pitch[:, 1 - side] += (wanted - lands) * share
+        if wanted < 0.0:
+            bend[:, 1 - side] += (-wanted - float(bend[-1, 1 - side])) * share
+    return pitch, bend
+
+
+def _heel_rise(lie: Lie, foot: int, body: Body) -> float:
+    """How far the other heel is up, more than on the level, as a foot comes down on a step."""
+    drop = -float(lie.rise[foot]) / body.leg_length if lie.stepped[foot] else 0.0
+    return HEEL_UP * float(smoothstep(drop / BALL_FIRST))
+
+
+def _landing_pitch(lands: float, lie: Lie, foot: int, body: Body) -> float:
+    """Pitch with which a sole lands at a footstep that would land with ``lands`` on the level."""
+    if not lie.stepped[foot]:
+        wanted = lands * (1.0 - _flatter(float(lie.slope[foot]))) if lands > 0.0 else lands
+    else:
+        rise = float(lie.rise[foot]) / body.leg_length
+        deep = float(smoothstep((-rise - HEEL_FIRST) / (BALL_FIRST - HEEL_FIRST)))
+        flat = float(smoothstep(rise / FLAT_RISE))
+        wanted = lands * (1.0 - flat) * (1.0 - deep) - TOES_DOWN * deep
+    wanted = min(wanted, 0.0) if lie.heel_hangs[foot] else wanted
+    return wanted if abs(wanted) > NEARLY_FLAT or wanted == lands else 0.0
+
+
+def _flatter(slope: float) -> float:
+    """Part of the landing pitch that a slope takes away."""
+    return MOST_FLAT * float(np.clip(slope / FLAT_SLOPE, 0.0, 1.0))
+
+
+def _base(
+    step: PlannedStep,
+    lie: Lie,
+    pick: list[int],
+    at: Float[np.ndarray, "T 2"],
+    phase: Float[np.ndarray, "T"],
+) -> tuple[Float[np.ndarray, "T"], Float[np.ndarray, "T"]]:
+    """Level of the ground as the hips feel it, and its slope along the walk."""
+    rear, stance, target = pick
+    if step.kind in LOCAL_KINDS:
+        first = 0.5 * (lie.plane(rear, at) + lie.plane(stance, at))
+        last = 0.5 * (lie.plane(target, at) + lie.plane(stance, at))
+        share = smoothstep(phase)
+        slope = (1.0 - share) * lie.slope[rear] + share * lie.slope[target]
+        return (1.0 - share) * first + share * last, slope
+
+    def between(a: int, b: int) -> Float[np.ndarray, "T"]:
+        way = lie.place[b] - lie.place[a]
+        size = float(way @ way)
+        if size < 1e-12:
+            return np.zeros(len(at))
+        return smoothstep((at - lie.place[a]) @ way / size)
+
+    before, after = between(rear, stance), between(stance, target)
+    if float(((lie.place[stance] - lie.place[rear]) ** 2).sum()) < 1e-12:
+        before = np.ones(len(at))
+    base = (1.0 - before) * lie.plane(rear, at) + before * lie.plane(stance, at)
+    base = base + after * (lie.plane(target, at) - lie.plane(stance, at))
+    slope = lie.slope[rear] + before * (lie.slope[stance] - lie.slope[rear])
+    slope = slope + after * (lie.slope[target] - lie.slope[stance])
+    return base, slope
+
+
+def _lean(slope: Float[np.ndarray, "T"]) -> Float[np.ndarray, "T"]:
+    """Forward lean of the trunk for a slope, radians."""
+    angle = np.arctan(slope)
+    return np.where(angle > 0.0, LEAN_UP, LEAN_DOWN) * angle
+
+
+def leaning(
+    body: Body,
+    pelvis: Float[np.ndarray, "T 3"],
+    upper: Float[np.ndarray, "T U 3"],
+    lean: Float[np.ndarray, "T"],
+) -> tuple[Float[np.ndarray, "T 3"], Float[np.ndarray, "T U 3"]]:
+    """Pelvis and upper body leaning forward by ``lean`` radians, the head level, arms plumb."""
+    if not lean.any():
+        return pelvis, upper
+    count = len(spine_names(body.spine_segments))
+    out = np.array(upper)
+
+    def about_left(angle: Float[np.ndarray, "T"]) -> Float[np.ndarray, "T 4"]:
+        turn = np.zeros((len(angle), 3))
+        turn[:, 0] = angle
+        return exp(turn)
+
+    def turned(angle: Float[np.ndarray, "T"], joint: Float[np.ndarray, "T 3"]) -> np.ndarray:
+        return log(multiply(about_left(angle), exp(joint)))
+
+    pelvis = turned(PELVIS_SHARE * lean, pelvis)
+    for i in range(count):
+        out[:, i] = turned((1.0 - PELVIS_SHARE) * lean / count, upper[:, i])
+    for i in (count, count + 1):
+        out[:, i] = turned(-0.5 * lean, upper[:, i])
+    for i, name in enumerate(upper_joints(body)):
+        if name.endswith("UpperArm"):
+            out[:, i] = turned(-lean, upper[:, i])
+    return pelvis, out
