@@ -114,7 +114,7 @@ def test_warnings_say_whose_they_are():
     [
         (lambda: Scene(()), "at least one walker"),
         (lambda: Scene((FAR, Walker("FAR", distance=1))), "two walkers have the name 'FAR'"),
-        (lambda: Scene((FAR,), ground="moon"), "ground must be flat, got 'moon'"),
+        (lambda: Scene((FAR,), ground="moon"), "unknown ground 'moon'"),
         (lambda: Walker("a b", distance=1), "must begin with a letter"),
         (lambda: Walker("a"), "say where to walk by one of"),
         (lambda: Walker("a", distance=1, do="stand 1"), "got do and distance"),

@@ -159,7 +159,7 @@ def test_all_that_is_wrong_is_said_at_once_with_its_place(read):
         read(FIVE)
     text = str(caught.value)
     for said in (
-        "line 1: ground: ground must be flat, got 'slop'",
+        "line 1: ground: unknown ground 'slop'",
         "line 5: walker 1 (ann), bdy: unknown key, did you mean 'body'?",
         "line 6: walker 1 (ann), speed: must be above 0 meters per second, got -1",
         "line 7: walker 1 (ann), do: action 1 'wlak to 0,3': unknown action 'wlak'",
