@@ -298,14 +298,14 @@ class ContactPlan:
         step: Int[np.ndarray, "F"],
         down: Bool[np.ndarray, "2 F"],
         pitch: Float[np.ndarray, "2 F"],
-        contacts: Bool[np.ndarray, "2 F 3"],
-    ) -> Bool[np.ndarray, "2 F 3"]:
+        contacts: Bool[np.ndarray, "F 2 3"],
+    ) -> Bool[np.ndarray, "F 2 3"]:
         """``contacts`` without what hangs over an edge; there the ball bears as the foot rolls."""
         assert self.stands.bears is not None
-        under = self.stands.bears[step].transpose(1, 0, 2)
-        rolls = down & (pitch <= 0.0) & ~under[..., TOE]
+        under = self.stands.bears[step]
+        rolls = (down & (pitch <= 0.0)).T & ~under[..., TOE]
         if self.targets.bears is not None:  # a walk that ends with a heel strike
-            under = np.where(down[..., None], under, self.targets.bears[step])
+            under = np.where(down.T[..., None], under, self.targets.bears[step][:, None])
         out = contacts & under
         out[..., BALL] |= rolls
         return out
