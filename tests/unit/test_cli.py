@@ -161,8 +161,8 @@ def test_version(run):
 #: Commands of the plan; those that are not built yet must not show.
 DESIGNED = {"demo", "walk", "learn", "compose", "certify", "measure", "convert", "list"}
 OPTIONS = {
-    "walk": "output distance path steps do scene body gait step-length speed cadence start stop "
-    "step-width toe-out vary fps seed json help",
+    "walk": "output distance path steps do scene ground body gait step-length speed cadence start "
+    "stop step-width toe-out vary fps seed json help",
     "demo": "output help",
     "list": "help",
 }
