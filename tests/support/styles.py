@@ -14,6 +14,8 @@ from gaitsmith.motion.kinematics import forward_kinematics, sole_positions
 from gaitsmith.style.align import SAMPLES, mapped, timing_of
 from gaitsmith.style.examples import examples_of
 from gaitsmith.style.parts import parts_of
+from gaitsmith.style.restyle import restyled
+from gaitsmith.style.rules import RULES
 
 SKELETON = neutral_cycle().skeleton
 
@@ -85,8 +87,11 @@ def kink(cycle):
     return np.degrees(np.linalg.norm(np.roll(speed, -1, axis=0) - speed, axis=-1).max())
 
 
-def slide(cycle, *, until="toe_off"):
-    """Way of the ball while it should stand, from foot flat on, meters: mean of both feet."""
+def slide(cycle, *, until="toe_off", early=0.0):
+    """Way of the ball while it should stand, from foot flat on, meters: mean of both feet.
+
+    ``early`` is the share of the stride before the event at which to stop.
+    """
     phase = np.arange(256) / 128
     center, turned = cycle.at(phase)
     center = center + phase[:, None] * [0.0, 0.0, cycle.stride_length]
@@ -96,7 +101,14 @@ def slide(cycle, *, until="toe_off"):
     for side, own in enumerate(cycle.events):
         strike, flat, off = own[0], own[1], own[EVENTS.index(until)]
         first = strike + (flat - strike) % 1.0
-        at = np.linspace(first, strike + (off - strike) % 1.0, 60)
+        at = np.linspace(first, strike + (off - strike) % 1.0 - early, 60)
         x, z = (np.interp(at, phase, balls[:, side, k]) for k in (0, 2))
         out.append(np.hypot(np.diff(x), np.diff(z)).sum())
     return float(np.mean(out))
+
+
+@cache
+def rule_library():
+    """Ten of the built-in styles by rule, ready to be mixed."""
+    names = sorted(RULES)[:10]
+    return examples_of({name: restyled(RULES[name]) for name in names}, subject())

@@ -178,13 +178,15 @@ def _rotation(
     """The rotation that makes whitened data least Gaussian (FastICA), and whether it was found."""
     from sklearn.decomposition import fastica  # late: walking needs no scikit-learn
     from sklearn.exceptions import ConvergenceWarning
+    from threadpoolctl import threadpool_limits  # comes with scikit-learn
 
     search: Any = fastica  # its annotations know neither whiten=False nor what comes back
     count = len(white)
     start = np.eye(count)
     if seed is not None:
         start, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(count, count)))
-    with warnings.catch_warnings(record=True) as said:
+    # threads cost more than such small products, and their sums are not the same everywhere
+    with warnings.catch_warnings(record=True) as said, threadpool_limits(1):
         warnings.simplefilter("always")
         _, turn, _ = search(
             white.T,

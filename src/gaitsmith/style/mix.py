@@ -87,11 +87,11 @@ def mixed(
     InfeasibleError
         If the result does not walk: feet out of order, or no way gained.
     """
-    weights = part_weights(examples, mix, components) | dict(legs or {})
+    weights = part_weights(examples, mix, components)
     notes = list(_unusual(examples, mix))
     timing = mixed_timing(examples, mix)
     strides = _strides(examples, mix, weights)
-    frame = _Frame(examples, mix, timing, strides, components, weights)
+    frame = _Frame(examples, mix, timing, strides, components, weights, dict(legs or {}))
     center, turned = frame.dense() if mix.engine == "dense" else frame.keyed()
     return _walking(examples, mix, timing, strides, center, turned, notes)
 
@@ -178,6 +178,7 @@ class _Frame:
     strides: int
     components: Mapping[str, Components] | None
     weights: Mapping[str, PartWeights]
+    legs: Mapping[str, PartWeights]
 
     def __post_init__(self) -> None:
         names = self.examples.names
@@ -191,8 +192,10 @@ class _Frame:
             for part in PARTS
         }
         used = np.abs(self.root) + (0.0 if self.offsets is None else np.abs(self.offsets))
-        for values in self.weights.values():
+        for values in (*self.weights.values(), *self.legs.values()):
             used = used + np.abs(values.reshape(len(used), -1)).sum(axis=1)
+        # the base's legs, from which those with found weights differ
+        self.weights = dict(self.weights) | dict.fromkeys(self.legs, self.root)
         self.used = [int(j) for j in np.flatnonzero(used > 0.0)]
 
     def dense(self) -> tuple[Float[np.ndarray, "K 3"], Float[np.ndarray, "K J 4"]]:
@@ -202,25 +205,39 @@ class _Frame:
         logs = np.zeros((len(self.phase), len(examples.skeleton), 3))
         split = self.offsets is not None or any(s != 1.0 for s in self.scale.values())
         # (K, N): the smooth walk through an example's key frames
-        smooth = self._smooth_matrix() if split else None
+        smooth = self._smooth_matrix() if split or self.legs else None
         rows = self.root if self.offsets is None else self.offsets
         for j, (_, values) in seen.items():
-            whole = values
-            if smooth is not None:
+            whole, detail = values, np.zeros_like(values)
+            if split and smooth is not None:
                 flat = self._keys_of(j).reshape(smooth.shape[1], -1)
                 whole = (smooth @ flat).reshape(values.shape)
-            detail = values - whole
+                detail = values - whole
             logs[:, 0] += self.root[j] * whole[:, 0] + rows[j] * detail[:, 0]
             for part, joints in examples.parts.items():
+                own = self.offsets is None and part not in self.legs
                 logs[:, joints] += self._weighed(part, j, whole)
-                if smooth is None:
-                    continue
-                if self.offsets is None:
-                    logs[:, joints] += self.scale[part] * self._weighed(part, j, detail)
-                else:
-                    logs[:, joints] += self.scale[part] * rows[j] * detail[:, joints]
+                details = self._weighed(part, j, detail) if own else rows[j] * detail[:, joints]
+                logs[:, joints] += self.scale[part] * details
+        if smooth is not None:
+            for part, joints in examples.parts.items():
+                if part in self.legs:
+                    logs[:, joints] += self._led(part, smooth)
         center = self._center({j: center for j, (center, _) in seen.items()}, smooth)
         return center, examples.rotations(logs)
+
+    def _led(self, part: str, smooth: Float[np.ndarray, "K N"]) -> Float[np.ndarray, "K P 3"]:
+        """How the key frames of a leg with found weights differ from the base's, smoothly led on.
+
+        Weights that were found at key frames know nothing of what is between them.
+        """
+        joints = list(self.examples.parts[part])
+        away = np.zeros((smooth.shape[1], len(joints), 3))
+        for j in self.used:
+            keys = self._keys_of(j)
+            away += self._weighed(part, j, keys, self.legs[part])
+            away -= self.root[j] * keys[:, joints]
+        return (smooth @ away.reshape(len(away), -1)).reshape(len(smooth), len(joints), 3)
 
     def keyed(self) -> tuple[Float[np.ndarray, "K 3"], Float[np.ndarray, "K J 4"]]:
         """Eight key frames, joined, and offsets about the reconstructed ones [KN12] Eqs. 1, 4."""
@@ -250,10 +267,15 @@ class _Frame:
         return self._center(centers, self._smooth_matrix()), turned
 
     def _weighed(
-        self, part: str, j: int, logs: Float[np.ndarray, "n J 3"]
+        self,
+        part: str,
+        j: int,
+        logs: Float[np.ndarray, "n J 3"],
+        weights: PartWeights | None = None,
     ) -> Float[np.ndarray, "n P 3"]:
         """Logs of a part of example ``j`` by its weight, or its components' weights."""
-        weight, joints = self.weights[part][j], list(self.examples.parts[part])
+        weights = self.weights[part] if weights is None else weights
+        weight, joints = weights[j], list(self.examples.parts[part])
         if np.ndim(weight) == 0:
             return weight * logs[:, joints]
         assert self.components is not None
@@ -282,7 +304,7 @@ class _Frame:
         out = np.empty_like(keys)
         out[:, 0] = self.root[j] * keys[:, 0]
         for part, joints in self.examples.parts.items():
-            out[:, joints] = self._weighed(part, j, keys)
+            out[:, joints] = self._weighed(part, j, keys, self.legs.get(part))
         return out
 
     def _joined(

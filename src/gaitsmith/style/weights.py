@@ -1,4 +1,4 @@
-"""What a mix is made with: weights of the examples for the root and every part [KN12] 4.1."""
+"""What a mix is made with: weights for the root and for every part [KN12] section 4.1."""
 
 from __future__ import annotations
 
