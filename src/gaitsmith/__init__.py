@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from gaitsmith._version import __version__
     from gaitsmith.body.body import Body, Foot
     from gaitsmith.body.presets import BODIES, body_from
+    from gaitsmith.composing import compose
     from gaitsmith.errors import (
         FileFormatError,
         GaitsmithError,
@@ -45,6 +46,7 @@ _HOMES = {
     "BODIES": "body.presets",
     "Body": "body.body",
     "body_from": "body.presets",
+    "compose": "composing",
     "Cycle": "gait.cycle",
     "FileFormatError": "errors",
     "Foot": "body.body",
@@ -84,6 +86,7 @@ __all__ = [
     "BODIES",
     "Body",
     "body_from",
+    "compose",
     "Cycle",
     "FileFormatError",
     "Foot",

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from gaitsmith._version import __version__
+from gaitsmith.cli.compose import compose
 from gaitsmith.cli.convert import convert
 from gaitsmith.cli.demo import demo
 from gaitsmith.cli.learn import learn
@@ -27,6 +28,7 @@ app = typer.Typer(
 app.command()(demo)
 app.command()(walk)
 app.command()(learn)
+app.command()(compose)
 app.command()(measure)
 app.command()(convert)
 app.command("list")(listing)

@@ -17,6 +17,7 @@ from gaitsmith.body.leg import two_bone_ik
 from gaitsmith.body.rig import skeleton_of
 from gaitsmith.body.sole import rolled_ankle
 from gaitsmith.conventions import SIDE_SIGN, SIDES
+from gaitsmith.errors import UnknownNameError
 from gaitsmith.gait.cycle import Cycle
 from gaitsmith.gait.neutral import neutral_cycle, subject
 from gaitsmith.gait.posture import (
@@ -30,14 +31,17 @@ from gaitsmith.geometry.curves import hann_average, pchip, running_maximum, smoo
 from gaitsmith.geometry.rotations import about, exp, inverse, log, multiply, rotate, sign_continuous
 from gaitsmith.plan.pace import preferred_pace
 from gaitsmith.style.align import SAMPLES
+from gaitsmith.style.rules import RULES, Rule
 from gaitsmith.walks import KinematicWalk
 from gaitsmith.walks.files import built_in
+from gaitsmith.walks.learned import gait_of_cycle
 from gaitsmith.walks.model import StepRequest
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
+    from gaitsmith.walks.learned import LearnedGait
 
 #: Longest hip to ankle over leg length in a stride: 7 deg of knee flexion.
 REACH = 0.998
@@ -49,76 +53,23 @@ SOFT = 1.5
 WIDTH, TOE_OUT = 0.118, 6.0
 
 
-@dataclass(frozen=True)
-class Rule:
-    """How a walk differs from neutral. Lengths are leg lengths, angles degrees, the rest factors.
+@cache
+def rule_gait(name: str) -> LearnedGait:
+    """The built-in style ``name``, or ``"neutral"`` at the preferred pace, of the neutral man.
 
-    Attributes
-    ----------
-    about
-        One line: what it is.
-    sources
-        Findings it is built from.
-    step, cadence
-        Of the preferred pace.
-    double
-        Share of the stride added to each double support.
-    width, toe_out, circumduction
-        Step width and toe-out added; how far the swinging foot goes out.
-    crouch, bounce, sway
-        Hips lower; vertical and sideways path of the hips.
-    strike, off, lift
-        Added to the pitch of the sole at heel strike (negative: flatter, then toes first); pitch
-        at toe-off; height of the swinging foot added.
-    tilt, turn, list_
-        Pelvis: forward tilt added; turns about the vertical and drops of the hips.
-    lean, slump, twist, roll
-        Trunk: forward lean, bend of the upper back; turns of the chest; sway to the bearing foot.
-    head, nod, tip
-        Head: pitch down in space; its own movement; tilt to the bearing foot.
-    swing, arms_out, arms_forward, roll_in
-        Upper arms: swing; abduction, flexion and inward roll added.
-    elbow, elbow_swing
-        Flexion of the elbow added; its movement.
-    shrug, round_
-        Shoulders: raised; drawn forward.
-    knees_out
-        Knees turned out against half way between pelvis and foot.
+    Raises
+    ------
+    UnknownNameError
+        If there is none of that name.
     """
-
-    about: str = "a measured man's walk, made symmetric"
-    sources: str = ""
-    step: float = 1.0
-    cadence: float = 1.0
-    double: float = 0.0
-    width: float = 0.0
-    toe_out: float = 0.0
-    circumduction: float = 0.0
-    crouch: float = 0.0
-    bounce: float = 1.0
-    sway: float = 1.0
-    strike: float = 0.0
-    off: float = 1.0
-    lift: float = 0.0
-    tilt: float = 0.0
-    turn: float = 1.0
-    list_: float = 1.0
-    lean: float = 0.0
-    slump: float = 0.0
-    twist: float = 1.0
-    roll: float = 0.0
-    head: float = 0.0
-    nod: float = 1.0
-    tip: float = 0.0
-    swing: float = 1.0
-    arms_out: float = 0.0
-    arms_forward: float = 0.0
-    roll_in: float = 0.0
-    elbow: float = 0.0
-    elbow_swing: float = 1.0
-    shrug: float = 0.0
-    round_: float = 0.0
-    knees_out: float = 0.0
+    known = {"neutral": Rule()} | RULES
+    if name not in known:
+        raise UnknownNameError("style", name, known)
+    rule = known[name]
+    note = "made by rule from the built-in gait neutral"
+    if rule.sources:
+        note += f", after {rule.sources}"
+    return gait_of_cycle(restyled(rule), subject(), name=name, notes=(note,))
 
 
 def restyled(rule: Rule) -> Cycle:

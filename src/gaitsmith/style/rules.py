@@ -2,21 +2,85 @@
 
 None is recorded. Each takes the built-in neutral walk (one measured man) and changes it as the
 cited findings say; where they give only a direction, the size is ours. ``docs/styles.md`` shows
-and explains each.
+and explains each. :mod:`gaitsmith.style.restyle` makes them.
 """
 
 from __future__ import annotations
 
-from functools import cache
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
-from gaitsmith.errors import UnknownNameError
-from gaitsmith.gait.neutral import subject
-from gaitsmith.style.restyle import Rule, restyled
-from gaitsmith.walks.learned import gait_of_cycle
 
-if TYPE_CHECKING:
-    from gaitsmith.walks.learned import LearnedGait
+@dataclass(frozen=True)
+class Rule:
+    """How a walk differs from neutral. Lengths are leg lengths, angles degrees, the rest factors.
+
+    Attributes
+    ----------
+    about
+        One line: what it is.
+    sources
+        Findings it is built from.
+    step, cadence
+        Of the preferred pace.
+    double
+        Share of the stride added to each double support.
+    width, toe_out, circumduction
+        Step width and toe-out added; how far the swinging foot goes out.
+    crouch, bounce, sway
+        Hips lower; vertical and sideways path of the hips.
+    strike, off, lift
+        Added to the pitch of the sole at heel strike (negative: flatter, then toes first); pitch
+        at toe-off; height of the swinging foot added.
+    tilt, turn, list_
+        Pelvis: forward tilt added; turns about the vertical and drops of the hips.
+    lean, slump, twist, roll
+        Trunk: forward lean, bend of the upper back; turns of the chest; sway to the bearing foot.
+    head, nod, tip
+        Head: pitch down in space; its own movement; tilt to the bearing foot.
+    swing, arms_out, arms_forward, roll_in
+        Upper arms: swing; abduction, flexion and inward roll added.
+    elbow, elbow_swing
+        Flexion of the elbow added; its movement.
+    shrug, round_
+        Shoulders: raised; drawn forward.
+    knees_out
+        Knees turned out against half way between pelvis and foot.
+    """
+
+    about: str = "a measured man's walk, made symmetric"
+    sources: str = ""
+    step: float = 1.0
+    cadence: float = 1.0
+    double: float = 0.0
+    width: float = 0.0
+    toe_out: float = 0.0
+    circumduction: float = 0.0
+    crouch: float = 0.0
+    bounce: float = 1.0
+    sway: float = 1.0
+    strike: float = 0.0
+    off: float = 1.0
+    lift: float = 0.0
+    tilt: float = 0.0
+    turn: float = 1.0
+    list_: float = 1.0
+    lean: float = 0.0
+    slump: float = 0.0
+    twist: float = 1.0
+    roll: float = 0.0
+    head: float = 0.0
+    nod: float = 1.0
+    tip: float = 0.0
+    swing: float = 1.0
+    arms_out: float = 0.0
+    arms_forward: float = 0.0
+    roll_in: float = 0.0
+    elbow: float = 0.0
+    elbow_swing: float = 1.0
+    shrug: float = 0.0
+    round_: float = 0.0
+    knees_out: float = 0.0
+
 
 #: The styles by name.
 RULES: dict[str, Rule] = {
@@ -305,22 +369,3 @@ RULES: dict[str, Rule] = {
         round_=15.0,
     ),
 }
-
-
-@cache
-def rule_gait(name: str) -> LearnedGait:
-    """The built-in style ``name``, or ``"neutral"`` at the preferred pace, of the neutral man.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is none of that name.
-    """
-    known = {"neutral": Rule()} | RULES
-    if name not in known:
-        raise UnknownNameError("style", name, known)
-    rule = known[name]
-    note = "made by rule from the built-in gait neutral"
-    if rule.sources:
-        note += f", after {rule.sources}"
-    return gait_of_cycle(restyled(rule), subject(), name=name, notes=(note,))

@@ -15,6 +15,7 @@ from gaitsmith.gait.posture import (
     with_pelvis_tilt,
 )
 from gaitsmith.plan.rhythm import UNEVEN
+from gaitsmith.style.rules import RULES, Rule
 from gaitsmith.synthesis.cycle_overlay import CycleOverlay
 from gaitsmith.synthesis.upper_body import Manner, RuleOverlay
 from gaitsmith.walks import KinematicWalk, winter
@@ -150,5 +151,21 @@ def _over_mean(left: float, right: float) -> tuple[float, float]:
     return share, 2.0 - share
 
 
+def _by_rule(name: str, rule: Rule) -> Callable[[Manner | None], Gait]:
+    """The built-in style ``name``."""
+
+    def make(_: Manner | None = None) -> Gait:
+        from gaitsmith.style.restyle import rule_gait  # late: other gaits need none
+
+        return learned(rule_gait(name))
+
+    make.__doc__ = f"{rule.about} (made by rule)"
+    return make
+
+
 #: Built-in gaits by the name the command line uses.
-GAITS: dict[str, Callable[[Manner | None], Gait]] = {"neutral": neutral, "winter": winter_rules}
+GAITS: dict[str, Callable[[Manner | None], Gait]] = {
+    "neutral": neutral,
+    "winter": winter_rules,
+    **{name: _by_rule(name, rule) for name, rule in RULES.items()},
+}
