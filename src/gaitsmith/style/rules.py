@@ -226,6 +226,7 @@ RULES: dict[str, Rule] = {
         elbow_swing=1.5,
         shrug=-3.0,
         round_=-6.0,
+        arms_forward=6.0,
     ),
     "hurried": Rule(
         about="quick steps, leaning forward, elbows bent",
