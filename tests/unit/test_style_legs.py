@@ -116,7 +116,7 @@ def test_found_weights_keep_feet_and_swing(found, root, legs):
     logs = [examples.logs(c.rotations)[:, joints] for c in (out, base, asked)]
     swing = np.arange(128) / 128 > out.events[0, 3]
     got, want = ((one - logs[1])[swing] for one in (logs[0], logs[2]))
-    assert (got * want).sum() / (want**2).sum() >= 0.4
+    assert (got * want).sum() / (want**2).sum() >= 0.45
 
 
 def test_with_the_active_weights_alone_the_base_comes_back(found):
@@ -126,7 +126,10 @@ def test_with_the_active_weights_alone_the_base_comes_back(found):
     assert max(best.after) ** 2 < 1e-10  # square meters: 1e-6 square centimeters
     out = mixed(examples, mix, found, legs=best.weights).cycle
     base = mixed(examples, Mix({"sad": 1.0})).cycle
-    assert np.degrees(apart(out.rotations, base.rotations).max()) < 0.01
+    stands = np.arange(128) / 128 <= out.events[0, 3]
+    leg = list(examples.parts["left_leg"])
+    away = apart(out.rotations, base.rotations)[stands][:, leg]
+    assert np.degrees(away.max()) < 0.01
 
 
 def test_a_strong_pull_leaves_the_asked_weights(found):

@@ -16,6 +16,7 @@ import numpy as np
 from gaitsmith._checks import one_of
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.style.parts import PARTS
+from gaitsmith.style.threads import on_one_thread
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -92,6 +93,7 @@ class Components:
         return logs[:, self.joints].reshape(len(logs), -1)
 
 
+@on_one_thread
 def decompose(
     examples: Examples,
     *,
@@ -178,15 +180,13 @@ def _rotation(
     """The rotation that makes whitened data least Gaussian (FastICA), and whether it was found."""
     from sklearn.decomposition import fastica  # late: walking needs no scikit-learn
     from sklearn.exceptions import ConvergenceWarning
-    from threadpoolctl import threadpool_limits  # comes with scikit-learn
 
     search: Any = fastica  # its annotations know neither whiten=False nor what comes back
     count = len(white)
     start = np.eye(count)
     if seed is not None:
         start, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(count, count)))
-    # threads cost more than such small products, and their sums are not the same everywhere
-    with warnings.catch_warnings(record=True) as said, threadpool_limits(1):
+    with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         _, turn, _ = search(
             white.T,

@@ -23,6 +23,7 @@ from gaitsmith.style.align import mapped, slots_over
 from gaitsmith.style.interpolation import periodic_cubic
 from gaitsmith.style.mix import mixed_timing, part_weights
 from gaitsmith.style.ranks import displacements, ranked
+from gaitsmith.style.threads import on_one_thread
 from gaitsmith.style.weights import vector
 
 if TYPE_CHECKING:
@@ -65,6 +66,7 @@ class LegWeights:
     after: tuple[float, float]
 
 
+@on_one_thread
 def leg_weights(
     examples: Examples,
     mix: Mix,

@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 
 #: Steps a second of people who walk.
 SLOWEST_STEPS, FASTEST_STEPS = 0.8, 2.6
+#: How far a leg with found weights goes over to the asked weights in the middle of its swing, where
+#: no contact hangs on it.
+SWINGS = 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,6 +198,7 @@ class _Frame:
         for values in (*self.weights.values(), *self.legs.values()):
             used = used + np.abs(values.reshape(len(used), -1)).sum(axis=1)
         # the base's legs, from which those with found weights differ
+        self.asked = self.weights
         self.weights = dict(self.weights) | dict.fromkeys(self.legs, self.root)
         self.used = [int(j) for j in np.flatnonzero(used > 0.0)]
 
@@ -219,12 +223,22 @@ class _Frame:
                 logs[:, joints] += self._weighed(part, j, whole)
                 details = self._weighed(part, j, detail) if own else rows[j] * detail[:, joints]
                 logs[:, joints] += self.scale[part] * details
-        if smooth is not None:
-            for part, joints in examples.parts.items():
-                if part in self.legs:
-                    logs[:, joints] += self._led(part, smooth)
+        for part, joints in examples.parts.items():
+            if part in self.legs and smooth is not None:
+                logs[:, joints] += self._led(part, smooth)
+                asked = sum(
+                    self._weighed(part, j, v, self.asked[part]) for j, (_, v) in seen.items()
+                )
+                share = SWINGS * self._swinging(part)[:, None, None]
+                logs[:, joints] += share * (asked - logs[:, joints])
         center = self._center({j: center for j, (center, _) in seen.items()}, smooth)
         return center, examples.rotations(logs)
+
+    def _swinging(self, part: str) -> Float[np.ndarray, "K"]:
+        """0 while the leg bears, smoothly 1 in the middle of its swing."""
+        strike, _, _, off = self.timing.contacts[int(part == "right_leg")]
+        u = (self.phase - off) % 1.0 / (strike + 1.0 - off)
+        return np.where(u < 1.0, np.sin(np.pi * np.minimum(u, 1.0)) ** 2, 0.0)
 
     def _led(self, part: str, smooth: Float[np.ndarray, "K N"]) -> Float[np.ndarray, "K P 3"]:
         """How the key frames of a leg with found weights differ from the base's, smoothly led on.
