@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -23,12 +24,12 @@ from gaitsmith.plan.follow import follow
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.given import GivenSteps, plan_given
 from gaitsmith.plan.lengths import Stance
-from gaitsmith.plan.pace import preferred_pace
+from gaitsmith.plan.pace import choose_pace, preferred_pace
 from gaitsmith.plan.paths import Path
 from gaitsmith.synthesis.curved import CurvedGenerator
 from gaitsmith.synthesis.gaits import GAITS as BUILT_IN
 from gaitsmith.synthesis.sample import sample_walk
-from gaitsmith.synthesis.step import prepare_walk
+from gaitsmith.synthesis.step import WalkerState, prepare_walk
 from gaitsmith.synthesis.straight import StraightGenerator
 from gaitsmith.walks.model import SagittalStep
 
@@ -417,3 +418,38 @@ def test_d14_the_leg_is_rolled_at_heel_strike_where_the_hips_follow_the_curve():
     heading = prepared.contact.poses(landings).heading
     ahead_of = plan.direction[(landings + 1).astype(int)] - heading
     assert np.degrees(np.abs(ahead_of)).min() > 3.0
+
+
+@pytest.mark.parametrize("gait", ["neutral", "winter"])
+def test_steps_begin_where_the_step_before_ends_also_beside_one_that_no_table_holds(gait):
+    """The long step is asked of the walk itself, its neighbors are read between others."""
+    lengths = np.array([0.7, 0.7, 1.13, 0.72, 0.7, 0.7]) * ADULT.leg_length
+    plan = plan_of(ADULT, lengths, stand=False)
+    direction = plan.direction + 0.02 * np.arange(len(plan.side))
+    plan = replace(plan, direction=direction, heading=plan.heading + 0.02, middle=None, gaze=None)
+    style = GAITS[gait](None)
+    generator = CurvedGenerator(style.walk, GROUND, style.overlay)
+    steps = generator.prepare_all(ADULT, WalkerState(), plan.steps())
+    for one, other in pairwise(s.reference for s in steps):
+        np.testing.assert_allclose(
+            one.curves.center[-1] + one.origin, other.curves.center[0] + other.origin, atol=1e-7
+        )
+        for name in ("heading", "pelvis", "upper"):
+            end, begin = getattr(one.curves, name)[-1], getattr(other.curves, name)[0]
+            np.testing.assert_allclose(end, begin, atol=1e-7)
+
+
+@pytest.mark.parametrize("turn", [-1.0, 1.0])
+@pytest.mark.parametrize("stop", ["stand", "walk"])
+def test_fast_curves_one_way_and_the_other_do_not_tangle_the_legs(turn, stop):
+    """Feet are set outside of each curve; between them hardly farther across than apart."""
+    arc, angle = np.pi / 4.0, turn * np.pi / 4.0
+    body = person(2.0)
+    pace = choose_pace(body, step_length=0.95 * body.leg_length, speed=2.2)
+    for start in np.linspace(1.0, 2.2, 7):
+        path = Path.of_turns([(start, 0.0), (arc, angle), (arc, -angle), (arc, angle), (1.0, 0.0)])
+        plan = plan_along(path, body, stop=stop, pace=pace)
+        way = 0.5 * (plan.direction[1:] + plan.direction[:-1])
+        gap = np.diff(plan.position, axis=0)
+        across = gap[:, 0] * np.cos(way) - gap[:, 2] * np.sin(way)
+        assert (across * (1 - 2 * plan.side[1:]))[2:-1].min() > -0.12

@@ -19,7 +19,7 @@ from gaitsmith.gait.person import person_of
 from gaitsmith.learning import learn
 from gaitsmith.pipeline import walk
 from gaitsmith.walks import KinematicWalk
-from gaitsmith.walks.from_cycle import walk_data_of
+from gaitsmith.walks.from_cycle import for_good, walk_data_of
 from gaitsmith.walks.generalize import ankle_at_heel_strike, ankle_at_toe_off, hip_height, mu
 from gaitsmith.walks.learned import learned_gait
 
@@ -160,3 +160,11 @@ def test_learned_again_it_is_the_same():
     again = learn(bare(motion))
     error = apart(cycle_angles(again.cycle), cycle_angles(first.cycle))
     assert rms(error) < 2.5
+
+
+def test_a_ball_does_not_leave_the_ground_by_a_hair_and_come_back():
+    rises = np.radians([0.0, 0.1, 0.2, 0.5, 2.0, 9.0])[:, None]
+    np.testing.assert_array_equal(for_good(rises), rises)
+    wobbles = np.radians([0.0, 0.5, 1.2, 0.4, 0.1, 0.5, 2.0, 9.0])[:, None]
+    np.testing.assert_array_equal(for_good(wobbles)[:5], 0.0)
+    np.testing.assert_array_equal(for_good(wobbles)[5:], wobbles[5:])

@@ -51,6 +51,9 @@ USUAL_TURN, LARGEST_TURN = float(np.radians(40.0)), float(np.radians(60.0))
 SHORTEST = 0.15
 #: Meters that the feet are set farther apart per radian of turn in one step.
 WIDENED = 0.06
+#: How far a foot may be set across the other one between opposite curves, over the step width, and
+#: how often the lean is evened for that.
+MOST_ACROSS, EVENINGS = 1.0, 40
 #: Cells of the stretched arc length, meters.
 CELL = 0.02
 
@@ -202,10 +205,16 @@ def follow(
     if trodden is not None:
         lean = np.zeros(len(along))  # feet are where there is ground for them
     if body is not None and outside and lean.any():
+        lever = lean_lever(body)
+        between = leftward(0.5 * (direction[1:] + direction[:-1]))[:, [0, 2]]
+        own = SIDE_SIGN[side[1:]] * (np.diff(middle, axis=0) * between).sum(-1)
+        room = ((1.0 + MOST_ACROSS) * stance.width + own) / lever
+        room[side[1:] == side[:-1]] = np.inf  # the foot that starts goes beside itself
+        lean = _uncrossed(lean, SIDE_SIGN[side], room, stop)
         beyond = leftward(direction)[:, [0, 2]]
-        middle = middle - (lean_lever(body) * lean)[:, None] * beyond
+        middle = middle - (lever * lean)[:, None] * beyond
         # the feet's own line comes in from outside as the lean goes; the hips stay on the path
-        drawn_in = np.arctan(lean_lever(body) * course_change(lean, middle))
+        drawn_in = np.arctan(lever * course_change(lean, middle))
     width = np.full(len(along), stance.width)
     if trodden is None:
         width = stance.width + _widening(direction, kinds, stance)
@@ -357,6 +366,35 @@ def _lean(
     if start == "walk":  # the first two stand where the path has them
         lean[:2] = 0.0
     return lean
+
+
+def _uncrossed(
+    lean: Float[np.ndarray, "N"],
+    sign: Float[np.ndarray, "N"],
+    room: Float[np.ndarray, "N-1"],
+    stop: str,
+) -> Float[np.ndarray, "N"]:
+    """``lean`` evened where its change would set a foot far across the other one.
+
+    Feet are set outside by as much as the body leans; from one fast curve into its opposite that
+    may be more in one step than they stand apart. ``room`` is the largest change of the tangent
+    that each step may have towards the other foot's side.
+    """
+    free = np.ones(len(lean), dtype=np.bool_)
+    free[:2] = False
+    free[-2:] = stop == "walk"
+    out = lean
+    for _ in range(EVENINGS):
+        # feet are set to the right as the lean goes to the left
+        over = np.maximum(sign[1:] * np.diff(out) - room, 0.0) * (free[1:] | free[:-1])
+        if not over.any():
+            break
+        both = np.where(free[1:] & free[:-1], 0.5, 1.0) * over * sign[1:]
+        move = np.zeros_like(out)
+        move[1:] -= both
+        move[:-1] += both
+        out = np.where(free, out + move, out)
+    return out
 
 
 def _widening(

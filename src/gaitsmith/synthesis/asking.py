@@ -73,15 +73,21 @@ class Answer:
         What was asked for.
     steps, shares
         Of the mean; alike but for their tables.
+    asked
+        The walk said so itself; else it is read between what it said of other lengths.
     raised
         Meters by which the hips begin higher than these, and then settle.
+    off
+        What sway, pelvis and upper body begin with beyond these, and then settle.
     """
 
     previous: float
     length: float
     steps: list[Asked]
     shares: list[float]
+    asked: bool = False
     raised: float = 0.0
+    off: Float[np.ndarray, "C"] | None = None
 
     @property
     def phase(self) -> Float[np.ndarray, "T"]:
@@ -104,12 +110,24 @@ class Answer:
             miss = height - self._height(0)
             self.raised = miss if abs(miss) > 1e-12 else 0.0
 
+    def joined_to(self, before: Answer) -> None:
+        """Begin with the sway, pelvis and upper body with which ``before`` ends.
+
+        What was asked differs by a millimeter from what is read of the same length.
+        """
+        self.off = before._above(-1) - self._above(0)
+
+    def _above(self, sample: int) -> Float[np.ndarray, "C"]:
+        rows = slice(ROWS["sway"].start, None)
+        parts = [s.table[rows, sample] * w for s, w in zip(self.steps, self.shares, strict=True)]
+        return np.sum(parts, axis=0)
+
     def _height(self, end: int) -> float:
         return sum(s.heights[end] * share for s, share in zip(self.steps, self.shares, strict=True))
 
     def table(self) -> Float[np.ndarray, "C T"]:
         """All curves, in the rows :data:`ROWS`."""
-        if len(self.steps) == 1 and not self.raised:
+        if len(self.steps) == 1 and not self.raised and self.off is None:
             return self.steps[0].table
         out = self.steps[0].table * self.shares[0]
         part = np.empty_like(out)
@@ -117,6 +135,8 @@ class Answer:
             out += np.multiply(step.table, share, out=part)
         if self.raised:
             out[HIP_HEIGHT] += self.raised * self.steps[0].settling
+        if self.off is not None:
+            out[ROWS["sway"].start :] += self.off[:, None] * self.steps[0].settling
         return out
 
 
@@ -130,7 +150,7 @@ class Asker:
     def ask(self, body: Body, request: StepRequest) -> Answer:
         """The answer to just this request."""
         step = self.ask_all(body, [request])[0]
-        return Answer(request.previous_length, request.length, [step], [1.0])
+        return Answer(request.previous_length, request.length, [step], [1.0], asked=True)
 
     def can(self, body: Body, request: StepRequest) -> bool:
         """Whether ``body`` can take such a step."""

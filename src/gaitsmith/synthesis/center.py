@@ -67,16 +67,17 @@ def track(
 
     chords = np.sqrt((bent.curves.coefficients[1] ** 2).sum(-1))
     lean, lean_rate = _led(bent.lean, chords, row, u)
-    # where the face points stays its own whatever the hips below it do
-    looks = np.array(bent.gaze)
-    looks[..., 0] -= bent.direction[:, 1:2]
-    gaze, _ = _led(looks, chords, row, u)
-    gaze -= heading - stands
     ends = [np.concatenate([bent.curvature[:, i], bent.curvature[:, i + 1]])[row] for i in (0, 1)]
     bend = ends[0] + (ends[1] - ends[0]) * smoothstep(u)
     place = place + (offset * lean)[:, None] * left
     # hips that draw inside or come back face where they go themselves
     heading = heading + np.arctan(offset * lean_rate)
+    # where the face points is a curve of its own, whatever the hips below it do
+    looks = np.array(bent.gaze)
+    looks[..., 0] += np.arctan(offset * bent.lean[..., 1]) - bent.direction[:, 1:2]
+    looks[..., 1] += offset * bent.lean[..., 2]
+    gaze, _ = _led(looks, chords, row, u)
+    gaze -= heading - stands
     resting = np.any(standing[:, 0] != 0.0, axis=-1) | (bent.length[:, 0] < 1e-9)
     if standing.any():
         begins = 1.0 - smoothstep(flat.phase / STANDING_SHARE)

@@ -125,28 +125,21 @@ class CurvedGenerator:
                 state = done[-1].end
                 continue
             for i in which:
-                state = self._answered(body, state, steps[i], requests[i], read.get(i), answers)
+                before = answers[-1] if i and not straight[i - 1] else None
+                answer = read.get(i)
+                if answer is None:
+                    request = replace(requests[i], hip_height=_rounded(state))
+                    answer = self._ask(body, request, steps[i])
+                answer.raised_from(state.hip_height)
+                if before is not None and before.asked != answer.asked:
+                    answer.joined_to(before)
+                answers.append(answer)
+                state = WalkerState(answer.end_height - requests[i].rise, steps[i].duration)
         if curved:
             rows = np.array(curved)
             done = self._bend(body, [steps[i] for i in curved], bent.rows(rows), answers)
             out |= dict(zip(curved, done, strict=True))
         return [out[i] for i in range(len(steps))]
-
-    def _answered(
-        self,
-        body: Body,
-        state: WalkerState,
-        step: PlannedStep,
-        request: StepRequest,
-        answer: Answer | None,
-        answers: list[Answer],
-    ) -> WalkerState:
-        """Put the answer to ``request`` on the list, asked for if there is none from a table."""
-        if answer is None:
-            answer = self._ask(body, replace(request, hip_height=_rounded(state)), step)
-        answer.raised_from(state.hip_height)
-        answers.append(answer)
-        return WalkerState(answer.end_height - request.rise, step.duration)
 
     def _ask(self, body: Body, request: StepRequest, step: PlannedStep) -> Answer:
         try:

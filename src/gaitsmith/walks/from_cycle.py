@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: Samples of a sequence over a whole step.
 SAMPLES = 120
+#: Toes that rise less than this against the ground lie on it, radians.
+LEAST_RISE = float(np.radians(0.3))
 #: alpha1..alpha3, see :class:`~gaitsmith.walks.data.Character`; alpha4 follows.
 _GAINS = (0.15, 0.35, 0.75)
 #: Straightest interior knee angle that walk data hold, radians.
@@ -157,7 +159,7 @@ class _Side:
         rising = np.clip((foot2.times - heel_off) / (end - heel_off), 0.0, 1.0)
         foot1 = _ending(foot1, _apart_from_0(landed), 1.0 - foot1.unit)
         foot2 = _ending(foot2, -off_pitch, rising)
-        meta = meta.with_values(np.maximum(meta.values - meta.values[0], 0.0))
+        meta = meta.with_values(for_good(np.maximum(meta.values - meta.values[0], 0.0)))
         off_meta = max(float(meta.values[-1, 0]), 2.0 * SMALLEST_ANGLE)
         meta = _ending(meta, off_meta, meta.unit)
         strike = self.read(p.ankle[:, o], np.array([self.span]), travels=True)[0]
@@ -205,6 +207,15 @@ def _ending(sequence: TimedSequence, end: float, u: Float[np.ndarray, "T"]) -> T
     """``sequence`` raised along ``u`` so that it is ``end`` where ``u`` is 1."""
     now = float(sequence.values[int(u.argmax()), 0])
     return sequence.with_values(sequence.values + (end - now) * u[:, None])
+
+
+def for_good(values: Float[np.ndarray, "T 1"]) -> Float[np.ndarray, "T 1"]:
+    """Nothing where it rises and comes back: a ball does not leave the ground by a hair."""
+    down = np.flatnonzero(values[:, 0] < LEAST_RISE)
+    out = np.array(values)
+    if len(down) and values[: down[-1]].max(initial=0.0) >= LEAST_RISE:
+        out[: down[-1] + 1] = 0.0
+    return out
 
 
 def _apart_from_0(angle: float) -> float:
