@@ -249,8 +249,8 @@ class Routes:
         from shapely import Point
         from shapely.ops import nearest_points
 
-        # where a limb has touched already, a hand's breadth more is named than was missing
-        more = SLACK + (HAND * self.body.height if self.strict else 0.0)
+        # a hand's breadth more than the least: who turns or stops takes more room than who walks
+        more = SLACK + HAND * self.body.height
         room = [
             min(self.least + self.wider.get(name, 0.0) + more, solid.distance(Point(start)) - SLACK)
             for name, solid in self._solids
