@@ -34,7 +34,7 @@ from gaitsmith.synthesis.habits import own_pace, stance_of, with_habits
 from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
 from gaitsmith.synthesis.straight import StraightGenerator
-from gaitsmith.synthesis.unusual import warn_of_short_steps, warn_of_unusual
+from gaitsmith.synthesis.unusual import warn_of_short_steps, warn_of_treads, warn_of_unusual
 from gaitsmith.synthesis.upper_body import Manner
 from gaitsmith.walks.generalize import check_step_length
 
@@ -315,7 +315,10 @@ def walk(
         walked = walk_among(planned, prepared, who, ground, around)
     plan = walked.plan
     if step_length is not None and isinstance(where, WalkPath) and isinstance(plan, StepPlan):
-        warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
+        if ground.stepped:
+            warn_of_treads(plan, step_length)
+        else:
+            warn_of_short_steps(plan, step_length, curve_share(where, pace, keep_cadence=keep))
     motion = sample_walk(walked, who, ground, fps=fps, recipe=recipe, begin=float(begin))
     return motion if until is None else stand_on(motion, until)
 

@@ -31,6 +31,17 @@ def warn_of_unusual(body: Body, step_length: float, speed: float) -> None:
         )
 
 
+def warn_of_treads(plan: StepPlan, step_length: float) -> None:
+    """Warn that footholds on ground with steps set how long steps are."""
+    taken = plan.step_lengths[1:-1]
+    warnings.warn(
+        f"footholds set the steps: they are {taken.min():.3f} to {taken.max():.3f} m long, "
+        f"{step_length:.3f} m is only a wish where the ground has steps",
+        GaitsmithWarning,
+        stacklevel=3,
+    )
+
+
 def warn_of_short_steps(plan: StepPlan, step_length: float, share: float) -> None:
     """Say that no step has the length asked for, or that curves leave only a share of it."""
     longest = float(plan.step_lengths[1:].max())
