@@ -59,11 +59,11 @@ def perform(scene: Scene | str | Path, *, fps: float = 60.0, seed: int = 0) -> P
 
     Examples
     --------
-    >>> from gaitsmith import Scene, Walker, perform
+    >>> from gaitsmith import Scene, Start, Walker, perform
     >>> ann = Walker("ann", do="walk to 0,2")
-    >>> ben = Walker("ben", body=1.2, do="walk to 2,2", begin=1.0)
+    >>> ben = Walker("ben", body=1.2, start=Start((2.0, 0.0)), do="walk to 2,2", begin=1.0)
     >>> perform(Scene((ann, ben)), fps=30)
-    <Performance: ann, ben; 152 frames at 30 fps>
+    <Performance: ann, ben; 135 frames at 30 fps>
     """
     if not isinstance(scene, Scene):
         from gaitsmith.scene.file import read_scene  # late: pydantic
