@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING
@@ -15,14 +16,13 @@ from gaitsmith.gait.posture import (
     with_pelvis_tilt,
 )
 from gaitsmith.plan.rhythm import UNEVEN
-from gaitsmith.style.rules import RULES, Rule
 from gaitsmith.synthesis.cycle_overlay import CycleOverlay
 from gaitsmith.synthesis.upper_body import Manner, RuleOverlay
 from gaitsmith.walks import KinematicWalk, winter
 from gaitsmith.walks.files import built_in
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from jaxtyping import Float
 
@@ -151,21 +151,41 @@ def _over_mean(left: float, right: float) -> tuple[float, float]:
     return share, 2.0 - share
 
 
-def _by_rule(name: str, rule: Rule) -> Callable[[Manner | None], Gait]:
+class _Gaits(Mapping[str, "Callable[[Manner | None], Gait]"]):
+    """Built-in gaits; the styles by rule are looked up only when another gait is asked for."""
+
+    def __init__(self, own: dict[str, Callable[[Manner | None], Gait]]) -> None:
+        self._own = own
+
+    def __getitem__(self, name: str) -> Callable[[Manner | None], Gait]:
+        if name in self._own:
+            return self._own[name]
+        from gaitsmith.style.rules import RULES  # late: other gaits need none
+
+        return _by_rule(name, RULES[name].about)
+
+    def __iter__(self) -> Iterator[str]:
+        from gaitsmith.style.rules import RULES
+
+        return iter((*self._own, *RULES))
+
+    def __len__(self) -> int:
+        return len(tuple(self))
+
+
+def _by_rule(name: str, about: str) -> Callable[[Manner | None], Gait]:
     """The built-in style ``name``."""
 
     def make(_: Manner | None = None) -> Gait:
-        from gaitsmith.style.restyle import rule_gait  # late: other gaits need none
+        from gaitsmith.style.restyle import rule_gait
 
         return learned(rule_gait(name))
 
-    make.__doc__ = f"{rule.about} (made by rule)"
+    make.__doc__ = f"{about} (made by rule)"
     return make
 
 
 #: Built-in gaits by the name the command line uses.
-GAITS: dict[str, Callable[[Manner | None], Gait]] = {
-    "neutral": neutral,
-    "winter": winter_rules,
-    **{name: _by_rule(name, rule) for name, rule in RULES.items()},
-}
+GAITS: Mapping[str, Callable[[Manner | None], Gait]] = _Gaits(
+    {"neutral": neutral, "winter": winter_rules}
+)
