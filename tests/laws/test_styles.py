@@ -20,6 +20,7 @@ from gaitsmith.plan.pace import froude
 from gaitsmith.plan.paths import Path
 from gaitsmith.style.restyle import restyled, rule_gait
 from gaitsmith.style.rules import RULES, Rule
+from gaitsmith.synthesis.gaits import GAITS
 from gaitsmith.walks.learned import gait_to_dict
 
 STYLES = sorted(RULES)
@@ -162,3 +163,12 @@ def walked(name, way, body):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", GaitsmithWarning)
         return walk(path=WAYS[way], gait=name, body=body_of(body), fps=120)
+
+
+def test_built_in_gaits_are_a_table():
+    assert list(GAITS)[:2] == ["neutral", "winter"]
+    assert len(GAITS) == len(list(GAITS)) == 2 + len(RULES)
+    assert "sad" in GAITS
+    assert "sadd" not in GAITS
+    with pytest.raises(UnknownNameError, match=r"unknown gait 'tird'.*Did you mean 'tired'"):
+        walk(distance=1.0, gait="tird")
