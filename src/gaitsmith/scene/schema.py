@@ -101,6 +101,12 @@ def _file(name: str, info: ValidationInfo) -> str:
     return str(Path(info.context["folder"]) / name)
 
 
+def _ground(value: object, info: ValidationInfo) -> str:
+    if isinstance(value, str) and Path(value).suffix.lower() in (".npz", ".png", ".obj"):
+        value = _file(value, info)
+    return said(checked_ground, value)
+
+
 def _body(value: object, info: ValidationInfo) -> Any:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ValueError(f"must be a height in meters, a name or a file, got {value!r}")
@@ -387,7 +393,7 @@ class PostTable(Table):
 class SceneTable(Table):
     """A whole file; one walker's keys may stand at its top instead of in ``[[walker]]``."""
 
-    ground: Annotated[Any, PlainValidator(lambda v: said(checked_ground, v))] = "flat"
+    ground: Annotated[Any, PlainValidator(_ground)] = "flat"
     walker: list[WalkerTable]
     obstacle: list[ObstacleTable] = []
     bar: list[BarTable] = []
