@@ -30,7 +30,7 @@ GRID = 0.01
 #: Shortest and longest step, over the leg.
 SHORTEST, LONGEST = 0.16, 1.0
 #: Highest rise or drop of one step, over the leg.
-HIGHEST = 0.25
+HIGHEST = 0.27
 #: Steepest ground to stand on, radians.
 STEEPEST = float(np.radians(30.0))
 #: Share of the sole that may hang over; where treads are shorter than the foot. Meters that its
