@@ -92,6 +92,15 @@ def test_a_step_that_would_cross_the_legs_is_refused_with_the_reason():
         stepped(foot(LEFT, -0.03, 0.2))
 
 
+def test_legs_that_would_stay_crossed_too_near_are_refused():
+    left, right = feet()
+    far, near = foot(LEFT, -0.12, 0.5), foot(LEFT, -0.13, -0.25, -0.5)
+    kept = local_step(right, left, far, 0.9, foot=ADULT.foot, hip_width=ADULT.hip_width)
+    assert kept.kind == "forward"
+    with pytest.raises(InfeasibleError, match=r"stay crossed, 0\.\d+ m one behind the other"):
+        local_step(right, left, near, 0.9, foot=ADULT.foot, hip_width=ADULT.hip_width)
+
+
 @given(ANGLES, ANGLES, st.floats(0.05, 1.0))
 @settings(max_examples=60)
 def test_left_and_right_are_mirror_images(angle, direction, way):

@@ -177,32 +177,65 @@ def test_walks_one_after_the_other_are_one_walk():
     assert planned("walk to 0,4; walk to 0,0").kinds.count("stop") == 2
 
 
-def test_a_turn_takes_two_steps_of_one_duration_and_the_gaze_leads_by_half_of_it():
-    plan = planned("turn left 90")
-    lead, first, second = plan.planned
+def test_a_turn_is_shared_out_and_the_gaze_leads_by_half_a_step():
+    """At most 60 deg for a pair of steps, 2.5 steps for the first; the head a little ahead."""
+    lead, first, second = planned("turn left 60").planned
     assert lead.kind == "stand"
-    assert plan.durations.sum() == pytest.approx(2.5 * first.duration)
+    assert first.duration == second.duration
     assert lead.duration == pytest.approx(0.5 * first.duration)
-    (turn, begin, end) = first.local.glances[0]
-    assert (turn, begin, end) == pytest.approx((np.pi / 2.0, -0.5, 0.5))
-    assert second.local.glances[0][2] == pytest.approx(-0.5)
-    assert len(planned("turn right 180").side) == 6
-    assert len(planned("turn right 200.1").side) == 8
+    for step, start in ((lead, 0.0), (first, 0.5), (second, 1.5)):
+        scale = step.duration / first.duration
+        for turn, begin, end in step.local.glances:
+            assert turn == pytest.approx(np.pi / 6.0), "what one step turns the pelvis by"
+            assert start + scale * begin == pytest.approx(round(start + scale * begin))
+            assert scale * (end - begin) == pytest.approx(1.0)
+    assert second.local.gaze == pytest.approx(np.pi / 6.0), "the first turn of the gaze is over"
+    pairs = {45: 1, 60: 1, 61: 2, 90: 2, 180: 3, 360: 6}
+    for angle, count in pairs.items():
+        assert len(planned(f"turn right {angle}").side) == 2 + 2 * count
 
 
 def test_a_turn_before_a_walk_is_the_dynamic_one():
     """2 lambda ahead facilitates the step that follows; the rear foot takes it."""
     plan = planned("turn left 90; walk to 4,0")
     turn = [s for s in plan.planned if s.kind == "turn"]
-    gap = turn[1].target.position - turn[0].target.position
+    gap = turn[-1].target.position - turn[-2].target.position
     assert gap @ np.array([1.0, 0.0, 0.0]) == pytest.approx(ADULT.hip_width)
     start = next(s for s in plan.planned if s.kind == "start")
     assert start.target.side == LEFT
     still = [s for s in planned("turn left 90; stand 1").planned if s.kind == "turn"]
-    gap = still[1].target.position - still[0].target.position
+    gap = still[-1].target.position - still[-2].target.position
     assert gap @ np.array([1.0, 0.0, 0.0]) == pytest.approx(0.0, abs=1e-12)
 
 
+def test_where_a_curve_turns_back_on_itself_the_walk_stops_and_turns():
+    plan = planned("follow 0,3 0,0.5 0,3")
+    assert plan.kinds.count("stop") == 3
+    np.testing.assert_allclose(stands(plan)[0], (0.0, 3.0), atol=1e-9)
+    stops = [
+        0.5 * (s.stance.position + s.target.position) for s in plan.planned if s.kind == "stop"
+    ]
+    np.testing.assert_allclose(stops, [[0, 0, 3.0], [0, 0, 0.5], [0, 0, 3.0]], atol=1e-9)
+    plan = planned("follow 1,1 0,0.5 2,0 -1,3")
+    np.testing.assert_allclose(stands(plan)[0], (-1.0, 3.0), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("feet", "why"),
+    [
+        ("L 0.01,0,0 R -0.01,0,0", "axes would be 0.020 m apart"),
+        ("L -0.1,0,0 R 0.1,0,0", "legs would cross"),
+        ("L 0.6,0,0 R -0.6,0,0", "1.20 m apart"),
+        ("L 0.15,0,80 R -0.15,0,-80", "turned 160 deg apart"),
+    ],
+)
+def test_a_stance_that_nobody_takes_is_refused_with_the_nearest(feet, why):
+    with pytest.raises(InfeasibleError, match=rf"action 1 \(BeAt\).*{why}.*nearest.* feet L") as e:
+        planned(f"be at 0,0 feet {feet}")
+    nearest = str(e.value).split("is: ")[1]
+    assert stands(planned(f"be at 0,0 {nearest}"))[0] == pytest.approx((0.0, 0.0), abs=1e-3)
+
+
 def test_what_cannot_be_done_names_the_action():
-    with pytest.raises(InfeasibleError, match=r"action 2 \(Follow\): the path turns"):
-        planned("stand 1; follow 0,3 0,0.5 0,3")
+    with pytest.raises(InfeasibleError, match=r"action 2 \(BeAt\): nobody stands so"):
+        planned("stand 1; be at 0,1 feet L 0,1,0 R 0,1,0")

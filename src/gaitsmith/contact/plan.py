@@ -85,7 +85,7 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
     # a foot that leaves from its heel, as in a step back, has no heel to raise
     rear = _rear(walk, down) & (walk.curves["pitch"] <= 1e-6)
     slack = np.where(down, 0.0, np.inf)
-    share = walk.phase / np.minimum(walk.toe_off[walk.step], 1.0)
+    share = walk.raising[walk.step] * walk.phase / np.minimum(walk.toe_off[walk.step], 1.0)
     slack[rear] = (REAR_SLACK * body.leg_length * share)[rear.any(-1)]
     ankle = np.array(walk.curves["ankle"])
     if walk.toe_off[-1] < 1.0:  # a walk that ends with a heel strike must reach that foothold

@@ -44,6 +44,9 @@ class ReferenceStep:
     speed_change
         What is added to the speed of the center at phase 0 and at phase 1, meters per step, so
         that it joins its neighbors; the way there is a cubic that moves neither end.
+    raising
+        Share of the usual rise of the rear heel that may bring its leg in reach before it
+        leaves; what is missing lowers the hips.
     """
 
     curves: StepCurves
@@ -55,6 +58,7 @@ class ReferenceStep:
     target: Float[np.ndarray, "3"]
     target_heading: float
     speed_change: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] | None = None
+    raising: float = 1.0
 
     def __post_init__(self) -> None:
         """Check the places, and that the foot leaves on a sample."""
@@ -155,7 +159,7 @@ class Proposal:
         ``(M,)`` index of the step.
     table
         ``(C, M)`` all curves, writable; rows as in :class:`StepCurves`.
-    stance, toe_off, foothold, foothold_heading, target, target_heading
+    stance, toe_off, foothold, foothold_heading, target, target_heading, raising
         ``(S, ...)`` of each step.
     leaving, landing
         The swing foot as each step proposes it at its own toe-off and end.
@@ -171,6 +175,7 @@ class Proposal:
     foothold_heading: Float[np.ndarray, "S 2"]
     target: Float[np.ndarray, "S 3"]
     target_heading: Float[np.ndarray, "S"]
+    raising: Float[np.ndarray, "S"]
     leaving: SwingEnd
     landing: SwingEnd
 
@@ -225,6 +230,7 @@ def stack(steps: Sequence[ReferenceStep]) -> Proposal:
         foothold_heading=np.array([s.foothold_heading for s in steps]),
         target=np.array([s.target for s in steps]),
         target_heading=np.array([s.target_heading for s in steps]),
+        raising=np.array([s.raising for s in steps]),
         leaving=SwingEnd.of(steps, at_end=False),
         landing=SwingEnd.of(steps, at_end=True),
     )

@@ -275,6 +275,12 @@ def _unequal(lengths: list[float], length: float, rhythm: Rhythm) -> list[float]
     return uneven.tolist()
 
 
+def count_steps(path: Path, pace: Pace, *, keep_cadence: bool = False) -> int:
+    """Steps that :func:`follow` takes from standing to standing, but for very sharp bends."""
+    stretch = _stretch(path, pace.step_length, 1.0 if keep_cadence else LENGTH_SHARE)
+    return len(stride_lengths(stretch.whole, pace.step_length, "stand", "stand")) + 1
+
+
 def curve_share(path: Path, pace: Pace, *, keep_cadence: bool = False) -> float:
     """Shortest step that the curves of ``path`` allow over the pace's own; 1 where none do."""
     stretch = _stretch(path, pace.step_length, 1.0 if keep_cadence else LENGTH_SHARE)
@@ -410,4 +416,4 @@ def _widening(
     return WIDENED * around
 
 
-__all__ = ["Stance", "curve_share", "follow"]
+__all__ = ["Stance", "count_steps", "curve_share", "follow"]

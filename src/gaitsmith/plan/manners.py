@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from gaitsmith.errors import UnknownNameError
 from gaitsmith.plan.pace import choose_pace
 
@@ -18,6 +20,10 @@ if TYPE_CHECKING:
     from gaitsmith.plan.rhythm import Rhythm
     from gaitsmith.plan.routes import Routes
     from gaitsmith.plan.script import Tempo
+
+
+#: Leg (m) of the adult whose durations of local steps are given; others keep the Froude number.
+LEG = 0.834
 
 
 @dataclass(frozen=True)
@@ -35,6 +41,11 @@ class Manners:
     paced: Callable[[Tempo], Pace] | None = None
     gaits: Mapping[str, Manners] | None = None
     routes: Routes | None = None
+
+    @property
+    def tempo(self) -> float:
+        """Durations of this body over those of an adult."""
+        return float(np.sqrt(self.body.leg_length / LEG))
 
     def in_gait(self, gait: str | None) -> Manners:
         """How the person walks in a gait of that name; None: as usual."""

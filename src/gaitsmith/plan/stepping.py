@@ -31,6 +31,8 @@ FARTHEST = {"forward": 0.75, "back": 0.50, "left": 0.72, "right": 0.72}
 #: Axes of feet that stand nearer than this touch, meters; a foot that lands across the other one
 #: must keep clear of its toes or heel by more, or it could not get there.
 TOUCHING, TOUCHING_ACROSS = 0.045, 0.075
+#: Crossed legs are one behind the other by so much of the sole from heel to ball: a bent knee.
+CROSSED = 1.25
 TURNAROUNDS = ("dynamic", "stationary")
 
 
@@ -98,13 +100,15 @@ def local_step(
     how: LocalStep | None = None,
     *,
     foot: Foot,
+    hip_width: float | None = None,
     following: Footstep | None = None,
 ) -> PlannedStep:
     """One step of [KB93] on its own: ``specs`` of Eq. 1 as a planned step.
 
     ``footpos``, ``footdir`` and ``left_or_right`` are in ``target``, the rest in ``how``.
     ``direction`` of a footstep is where the foot points but for its toe-out; the kind is read
-    from it.
+    from it. With ``hip_width`` a step that leaves the legs crossed is checked: the shins must
+    clear each other.
 
     Raises
     ------
@@ -132,7 +136,30 @@ def local_step(
             f"the {SIDES[target.side]} foot would be set on the {SIDES[stance.side]} one: their "
             f"axes would be {apart:.3f} m apart, feet need {least:.3f} m there"
         )
+    if across and hip_width is not None:
+        _check_crossed(stance, target, hip_width, foot)
     return PlannedStep(0, kind, stance, origin, target, None, following, duration, how)
+
+
+def _check_crossed(stance: Footstep, target: Footstep, hip_width: float, foot: Foot) -> None:
+    """Refuse legs that stay crossed so near that one knee is in the other leg.
+
+    Legs from hips to crossed feet meet, seen from ahead, at the part hips / (hips + cross) of
+    their height from the hips on; there one must be far enough in front of the other.
+    """
+    way, sign = target.position - stance.position, SIDE_SIGN[target.side]
+    crossed = [-sign * float(way @ leftward(f.direction)) for f in (stance, target)]
+    if min(crossed) <= 0.0:
+        return
+    middle = 0.5 * (stance.direction + target.direction)
+    along = abs(float(way @ ahead(middle)))
+    apart = along * hip_width / (hip_width + 0.5 * sum(crossed))
+    least = CROSSED * (foot.heel + foot.ball)
+    if apart < least:
+        raise InfeasibleError(
+            f"the legs would stay crossed, {apart:.2f} m one behind the other, which takes "
+            f"{least:.2f} m; land less far across or farther on, or step with the other foot first"
+        )
 
 
 def turnaround(

@@ -1,8 +1,8 @@
-"""Ways and goals of a director: paths through points, and where ``be at`` sets the feet."""
+"""Ways and goals of a director: points on the way, and where ``be at`` sets the feet."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
     from gaitsmith.plan.footsteps import Footstep, StepPlan
     from gaitsmith.plan.lengths import Stance
-    from gaitsmith.plan.script import BeAt
+    from gaitsmith.plan.script import BeAt, Tempo
+
+    Way = list[Float[np.ndarray, "2"]]
 
 #: Straight legs of a walk bend only so far from their ends, meters.
 CORNER = 0.8
@@ -45,31 +47,64 @@ def goals_of(
     }
 
 
-def path_through(
-    here: Float[np.ndarray, "2"], run: Sequence[tuple[list[Float[np.ndarray, "2"]], bool]]
-) -> Path:
-    """One path through the points of all ways; straight ways bend near their ends only."""
-    points = [here]
-    last = len(run) - 1
-    for i, (way, soft) in enumerate(run):
-        if not soft and last > 0:
+@dataclass(frozen=True, eq=False)
+class Route:
+    """Points to walk through and the tempo of the way to each but the first."""
+
+    points: Float[np.ndarray, "n 2"]
+    tempi: tuple[Tempo | None, ...]
+
+    @staticmethod
+    def of(here: Float[np.ndarray, "2"], run: Sequence[tuple[Way, bool, Tempo | None]]) -> Route:
+        """All ways one after the other; straight ones (not soft) bend near their ends only."""
+        points, tempi = [here], []
+        last = len(run) - 1
+        for i, (way, soft, tempo) in enumerate(run):
+            more = list(way)
             gap = way[0] - points[-1]
             size = float(np.linalg.norm(gap))
-            if size > 2.5 * CORNER:
+            if not soft and last > 0 and size > 2.5 * CORNER:
                 unit = gap / size
-                begin = points[-1]
-                if i > 0:
-                    points.append(begin + CORNER * unit)
-                if i < last:
-                    points.append(way[0] - CORNER * unit)
-        points += way
-    kept = [points[0]]
-    for point in points[1:]:
-        if np.linalg.norm(point - kept[-1]) > NO_WAY:
-            kept.append(point)
-    if len(kept) < 2:
-        raise InfeasibleError("there is no way to walk: it begins where it ends")
-    return Path.through(np.array(kept))
+                before = [points[-1] + CORNER * unit] if i > 0 else []
+                more = [*before, *([way[0] - CORNER * unit] if i < last else []), *way]
+            for point in more:
+                if np.linalg.norm(point - points[-1]) > NO_WAY:
+                    points.append(point)
+                    tempi.append(tempo)
+        if len(points) < 2:
+            raise InfeasibleError("there is no way to walk: it begins where it ends")
+        return Route(np.array(points), tuple(tempi))
+
+    def starting(self, here: Float[np.ndarray, "2"]) -> Route:
+        """The same from ``here``."""
+        return replace(self, points=np.concatenate([here[None], self.points[1:]]))
+
+    def cut(self, at: int) -> tuple[Route, Route]:
+        """The way to a point, and from there on."""
+        return (
+            Route(self.points[: at + 1], self.tempi[:at]),
+            Route(self.points[at:], self.tempi[at:]),
+        )
+
+    def path(self) -> Path:
+        """The smooth curve through the points."""
+        return Path.through(self.points)
+
+    def legs(self) -> tuple[list[Float[np.ndarray, "2"]], list[Tempo | None]]:
+        """Where the way at each tempo ends, and the tempi."""
+        ends, tempi = [], []
+        for point, tempo in zip(self.points[1:], self.tempi, strict=True):
+            if tempi and tempi[-1] == tempo:
+                ends[-1] = point
+            else:
+                ends.append(point)
+                tempi.append(tempo)
+        return ends, tempi
+
+
+def path_through(here: Float[np.ndarray, "2"], run: Sequence[tuple[Way, bool]]) -> Path:
+    """One path through the points of all ways."""
+    return Route.of(here, [(way, soft, None) for way, soft in run]).path()
 
 
 def leads(feet: Mapping[int, Footstep], path: Path) -> dict[int, float]:

@@ -34,6 +34,10 @@ SHORTEST, LONGEST = 0.05, 1.0
 PELVIS_TURN, ALPHA_SHARE = float(np.radians(10.0)), 0.5
 #: Speed of the hips where the second step of a pair takes over, over the mean of both.
 THROUGH = {"forward": 1.5, "backward": 1.4, "lateral": 1.6, "turn": 0.8}
+#: A foot that would tip by less lands and leaves flat, radians.
+LEAST_TIP = 0.05
+#: Feet nearer than this along or across are side by side, meters.
+APART = 0.05
 #: Reach of straight legs, over their length; less of it at the widest straddle: people drop by
 #: 10-13 cm at 0.6 m.
 STANDING_REACH, STRADDLE = 0.998, 0.055
@@ -98,7 +102,8 @@ def underlying_step(body: Body, step: PlannedStep) -> StepRequest:
 def usual_angles(s: LocalDraft) -> tuple[float, float, float]:
     """Foot angles that suit the step: stance and swing at HSM+, swing at TOM.
 
-    A step that closes ends on flat feet; a foot that comes from far leaves on its toes.
+    A step that closes ends on flat feet; a foot that comes from far leaves on its toes, one that
+    is left in front on its heel.
     """
     kind, leg = s.step.kind, s.body.leg_length
     way = ahead(s.stance.direction)
@@ -107,18 +112,40 @@ def usual_angles(s: LocalDraft) -> tuple[float, float, float]:
     mu2 = max(float(s.walked.pitch[-1, 1]), 0.0)
     off = int(s.walked.phase.searchsorted(s.walked.toe_off))
     mu3 = max(-float(s.walked.pitch[off, 1]), 0.0)
+    left = _leaving(s, mu3)
     if kind == "turn":
-        return (0.0, 0.0, 0.0)
-    far = float(smoothstep(np.array(min(max(abs(there), 0.6 * travel) / (0.5 * leg), 1.0))))
+        return (0.0, 0.0, left)
+    far = _eased(max(abs(there), 0.6 * travel) / (0.5 * leg))
     if kind == "lateral":
         push = 0.3 * min(travel / (0.7 * leg), 1.0) ** 2 if s.how.closes else 0.0
-        return (0.0, 0.0, -0.15 - push)
+        return (0.0, 0.0, left if left > 0.0 else min(-0.15 - push, left))
     if kind == "backward":
         # as a forward step reversed: toes land first, the heel leaves last
-        return (0.0, 0.0, 0.2 * far) if s.how.closes else (0.0, -0.2 * far, -0.25 * max(far, 0.3))
+        tipped = 0.2 * far if 0.2 * far > LEAST_TIP else 0.0
+        if s.how.closes:
+            return (0.0, 0.0, left if left < 0.0 else tipped)
+        return (0.0, -tipped, left or -0.25 * max(far, 0.3))
     if s.how.closes:
-        return (0.0, 0.0, -0.6 * mu3 * max(far, 0.25))
-    return (-0.25 * far, mu2 * far, -0.6 * mu3 * max(0.6 * far, 0.25))
+        return (0.0, 0.0, min(-0.6 * mu3 * max(far, 0.25), left))
+    return (-0.25 * far, mu2 * far, min(-0.6 * mu3 * max(0.6 * far, 0.25), left))
+
+
+def _leaving(s: LocalDraft, mu3: float) -> float:
+    """Pitch at TOM of a foot that stands apart from the other: behind or aside of it, or ahead."""
+    way, leg = s.step.origin.position - s.stance.position, s.body.leg_length
+    along = float(way @ ahead(s.stance.direction))
+    aside = abs(float(way @ leftward(s.stance.direction)))
+    behind = -0.6 * mu3 * _eased(max(-along - APART, 0.0) / (0.5 * leg))
+    wide = max(aside - s.body.hip_width - APART, 0.0) / (0.7 * leg)
+    aside = -0.45 * min(wide, 1.0) ** 2
+    if min(behind, aside) < -0.05:
+        return min(behind, aside)
+    ahead_of_it = 0.2 * _eased(max(along - APART, 0.0) / (0.5 * leg))
+    return ahead_of_it if ahead_of_it > LEAST_TIP else 0.0
+
+
+def _eased(share: float) -> float:
+    return float(smoothstep(np.array(min(share, 1.0))))
 
 
 def pelvis_heading(s: LocalDraft, limit: float) -> float:

@@ -17,9 +17,11 @@ if TYPE_CHECKING:
 PASSING = 0.12
 #: Distance of the feet's axes in passing over stature; narrower footsteps keep their own.
 APART = 0.085 / 1.75
+#: The same of a foot that comes from across the other, and how soon it gets there.
+ACROSS = 0.17 / 1.75
 #: The way is pushed aside in such parts (m), at most so many, straight outward or so far from it.
-PUSH, MOST_PUSHES = 0.01, 24
-AROUND = np.radians([0.0, 40.0, -40.0, 75.0, -75.0])
+PUSH, MOST_PUSHES = 0.01, 40
+AROUND = np.radians([0.0, 40.0, -40.0, 75.0, -75.0, 100.0, -100.0])
 AROUND.flags.writeable = False
 
 
@@ -63,12 +65,13 @@ def kept_apart(
 ) -> Float[np.ndarray, "T 2"]:
     """``way`` pushed aside, by ``shape``, by the least that keeps the feet from touching.
 
-    Outward, or outward and round the toes or the heel: the first of these that helps.
+    Outward, or outward and round the toes or the heel: the first of these that helps. A foot that
+    comes from across the other one goes farther round, or the shins would meet.
     """
 
     def apart(
         paths: Float[np.ndarray, "k n 2"], turned: Float[np.ndarray, "n"]
-    ) -> Float[np.ndarray, "k"]:
+    ) -> Float[np.ndarray, "k n"]:
         rows = paths.reshape(-1, 2)
         many = len(rows)
         gaps = feet_apart(
@@ -79,18 +82,22 @@ def kept_apart(
             back=foot.heel,
             front=foot.ball + foot.toes,
         )
-        return gaps.reshape(len(paths), -1).min(axis=1)
+        return gaps.reshape(len(paths), -1)
 
-    want = min(APART * stature, float(apart(way[None, [0, -1]], heading[[0, -1]])[0]))
-    if float(apart(way[None], heading)[0]) >= want - 1e-4:
+    ends = apart(way[None, [0, -1]], heading[[0, -1]])[0]
+    want = np.full(len(way), min(APART * stature, float(ends.min())))
+    if float((way[0] - stance) @ outward) < 0.0:
+        wide = np.minimum(ends[0] + ACROSS * shape, ends[1] + ACROSS * shape)
+        want = np.maximum(want, np.minimum(ACROSS * stature, wide))
+    if float((apart(way[None], heading)[0] - want).min()) >= -1e-4:
         return way
     along = np.array([-outward[1], outward[0]])
     unit = np.cos(AROUND)[:, None] * outward + np.sin(AROUND)[:, None] * along
     size = PUSH * (1.0 + np.arange(MOST_PUSHES))
     moved = size[:, None, None] * unit
     paths = way + shape[:, None] * moved.reshape(-1, 1, 2)
-    gaps = apart(paths, heading)
-    enough = np.flatnonzero(gaps >= want - 1e-4)
+    gaps = (apart(paths, heading) - want).min(axis=1)
+    enough = np.flatnonzero(gaps >= -1e-4)
     if len(enough):
         return paths[enough[0]]
     # no way is wide enough: the widest, a longer one only where it gains

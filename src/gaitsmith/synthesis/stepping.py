@@ -61,6 +61,8 @@ CLOSING_OVER = {"forward": 0.50, "backward": 0.45, "lateral": 0.15, "turn": 0.66
 #: Phase at which the swing foot leaves: first steps from standing shift the weight for longer.
 TOE_OFF = {"forward": 0.42, "backward": 0.42, "lateral": 0.34, "turn": 0.40}
 CLOSING_TOE_OFF = {"forward": 0.34, "backward": 0.36, "lateral": 0.20, "turn": 0.34}
+#: Feet so far apart, over the leg, are as far as feet are when one closes.
+APART_WHOLE = 0.4
 #: Drop of the pelvis on the swing side, lean of the trunk over the stance foot, radians.
 LIST, OVER_LEAN = float(np.radians(2.5)), float(np.radians(2.0))
 #: Arms: swing at a step of half a leg, held apart in a lateral step, radians.
@@ -103,8 +105,7 @@ class LocalGenerator:
         begin, height = _beginning(state, step, rest)
         if step.kind == "stand":
             return self._stand(body, step, how, rest, begin, height)
-        usual = CLOSING_TOE_OFF if how.closes else TOE_OFF
-        toe_off = how.toe_off or usual[step.kind]
+        toe_off = how.toe_off or _usual(step, how, body, TOE_OFF, CLOSING_TOE_OFF)
         t = np.concatenate(
             [np.linspace(0.0, toe_off, SAMPLES)[:-1], np.linspace(toe_off, 1.0, SAMPLES)]
         )
@@ -131,7 +132,7 @@ class LocalGenerator:
 
         shift = over_stance(t, s.toe_off)
         stands = s.stance.position[[0, 2]]
-        over = (CLOSING_OVER if s.how.closes else OVER)[step.kind]
+        over = _usual(step, s.how, body, OVER, CLOSING_OVER)
         place = base + (over * shift)[:, None] * (stands - base)
         center = np.stack([place[:, 0], s.stance.position[1] + height, place[:, 1]], axis=-1)
         pelvis = np.tile(s.rest.pelvis, (len(t), 1))
@@ -168,7 +169,7 @@ class LocalGenerator:
         return TabledStep(
             step.duration,
             WalkerState(hip_height=ends_at - rise, local=after),
-            _reference(step, curves, origin, s.toe_off),
+            _reference(step, curves, origin, s.toe_off, raising=0.0),
             body,
             self._ground,
         )
@@ -214,8 +215,36 @@ class LocalGenerator:
         return TabledStep(step.duration, end, reference, body, self._ground)
 
 
+def _usual(
+    step: PlannedStep,
+    how: LocalStep,
+    body: Body,
+    first: dict[str, float],
+    closing: dict[str, float],
+) -> float:
+    """``first`` of feet side by side; the farther they are apart the more as if it closed.
+
+    A foot that was left behind, ahead or aside is no foot that bears half of the weight.
+    """
+    base = (closing if how.closes else first)[step.kind]
+    way = step.origin.position - step.stance.position
+    along = float(way @ ahead(step.stance.direction))
+    wide = max(abs(float(way @ leftward(step.stance.direction))) - body.hip_width, 0.0)
+    apart = abs(along) + wide
+    if apart < 1e-6:
+        return base
+    left = closing["forward" if along < 0.0 else "backward"]
+    mixed = (abs(along) * left + wide * closing["lateral"]) / apart
+    share = smoothstep(np.array(min(apart / (APART_WHOLE * body.leg_length), 1.0)))
+    return float(base + share * (mixed - base))
+
+
 def _reference(
-    step: PlannedStep, curves: StepCurves, origin: Float[np.ndarray, "3"], toe_off: float
+    step: PlannedStep,
+    curves: StepCurves,
+    origin: Float[np.ndarray, "3"],
+    toe_off: float,
+    raising: float = 1.0,
 ) -> ReferenceStep:
     foothold, heading = np.empty((2, 3)), np.empty(2)
     for foot in (step.stance, step.origin):
@@ -229,6 +258,7 @@ def _reference(
         foothold_heading=heading,
         target=step.target.position,
         target_heading=step.target.heading,
+        raising=raising,
     )
 
 
