@@ -42,7 +42,12 @@ def bends(time):
     )
 
 
-@pytest.fixture(scope="module", params=BODIES)
+#: The others take their time; these two are the usual and the oddest.
+QUICK = ("adult", "long thigh")
+PEOPLE = [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in BODIES]
+
+
+@pytest.fixture(scope="module", params=PEOPLE)
 def walked(request):
     body = BODIES[request.param]
     walker = ExactWalker(built_in_sets(), body)

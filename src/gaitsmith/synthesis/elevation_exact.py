@@ -139,11 +139,12 @@ class _Release(NamedTuple):
 
 
 class _State(NamedTuple):
-    """What one step leaves to the next."""
+    """What one step leaves to the next; ``bias`` is what its landing missed the planar f by."""
 
     landing: Landing
     release: _Release
     weights: Float[np.ndarray, "S"]
+    bias: Float[np.ndarray, "2"]
 
 
 class _Plane(NamedTuple):
@@ -227,7 +228,7 @@ class ExactWalker:
         out: list[Legs] = []
         for index in range(steps):
             turned = frozen_array("heading", heading(index + 2.0 * time), (frames + 1,))
-            target = self._aimed(index, float(turned[-1]), state, length)
+            state, target = self._aimed(index, float(turned[-1]), state, length)
             legs, state = self._step(index, time, turned, state, target)
             out.append(legs)
         return out
@@ -250,36 +251,37 @@ class ExactWalker:
         axis = sagittal(np.array(heading))[1]
         turned = about(axis, np.array(pitch)) @ turned
         landing = land(self.figure, turned, -(turned @ self.figure.sole[0]), heading)
-        state = _State(landing, _Release(self.manners.toe_out, 0.0, 0.0), weights)
+        state = _State(landing, _Release(self.manners.toe_out, 0.0, 0.0), weights, np.zeros(2))
         time = np.array([0.0, 0.1, 0.2, 0.3, 0.4, 0.5])
         for index in range(4):
-            target = self._aimed(index, heading, state, length)
+            state, target = self._aimed(index, heading, state, length)
             _, state = self._step(index, time, np.full(len(time), heading), state, target)
         shift = state.landing.places[0] * (X + Z)
         return state._replace(landing=state.landing.moved(-shift))
 
     def _aimed(
         self, index: int, heading: float, state: _State, length: float | None
-    ) -> Float[np.ndarray, "S"]:
+    ) -> tuple[_State, Float[np.ndarray, "S"]]:
         """Weights at the end of a step, so that the foot lands as far off as asked, on the ground.
 
         What the planar f of [SM01] predicts is off by the pelvis' list and the legs' slant; that
-        difference, measured on the landing itself, is taken off the request.
+        difference, measured on the landing itself, is taken off the request, and off the next.
         """
         if length is None or self._mixer is None:
-            return state.weights
-        wanted = asked = np.array([length, 0.0])
-        weights = self._mixer.find(asked[None]).weights[0]
-        end = np.array([0.5])
+            return state, state.weights
+        wanted, end = np.array([length, 0.0]), np.array([0.5])
+        bias, front = state.bias, sagittal(np.array(heading))[0]
+        aimed, weights = state, state.weights
         for _ in range(_AIMS):
-            _, after = self._step(index, end, np.array([heading]), state, weights)
+            weights = self._mixer.find((wanted + bias)[None]).weights[0]
+            aimed = state._replace(bias=bias)
+            _, after = self._step(index, end, np.array([heading]), aimed, weights)
             way = after.landing.lies(self.figure) - state.landing.lies(self.figure)
-            found = np.array([way @ sagittal(np.array(heading))[0], after.landing.gap])
-            if np.abs(found - wanted).max() < _AIMED:
+            missed = wanted - np.array([way @ front, after.landing.gap])
+            if np.abs(missed).max() < _AIMED:
                 break
-            asked = asked + wanted - found
-            weights = self._mixer.find(asked[None]).weights[0]
-        return weights
+            bias = bias + missed
+        return aimed, weights
 
     def _step(
         self,
@@ -312,7 +314,7 @@ class ExactWalker:
             float((stance.foot[-1] @ Y) @ normal),
             float(foot.toe[-1]),
         )
-        return legs, _State(landed, leaving, target)
+        return legs, _State(landed, leaving, target, state.bias)
 
     def _stance_leg(
         self,

@@ -89,11 +89,14 @@ def ankle_axes(side: float) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "
 def about(axis: Float[np.ndarray, "*n 3"], angle: Float[np.ndarray, "*n"]) -> np.ndarray:
     """Rotation matrices ``(*n, 3, 3)`` about unit axes."""
     axis, angle = np.asarray(axis), np.asarray(angle)
-    x, y, z = np.broadcast_arrays(axis[..., 0], axis[..., 1], axis[..., 2])
-    zero = np.zeros_like(x)
-    cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
-    c, s = np.cos(angle)[..., None, None], np.sin(angle)[..., None, None]
-    return c * np.eye(3) + s * cross + (1.0 - c) * axis[..., :, None] * axis[..., None, :]
+    x, y, z = axis[..., 0], axis[..., 1], axis[..., 2]
+    c, s = np.cos(angle), np.sin(angle)
+    vx, vy, vz = (1.0 - c) * x, (1.0 - c) * y, (1.0 - c) * z
+    out = np.empty((*np.broadcast_shapes(x.shape, c.shape), 3, 3))
+    out[..., 0, 0], out[..., 0, 1], out[..., 0, 2] = c + vx * x, vx * y - s * z, vx * z + s * y
+    out[..., 1, 0], out[..., 1, 1], out[..., 1, 2] = vx * y + s * z, c + vy * y, vy * z - s * x
+    out[..., 2, 0], out[..., 2, 1], out[..., 2, 2] = vx * z - s * y, vy * z + s * x, c + vz * z
+    return out
 
 
 def apply(matrix: Float[np.ndarray, "*n 3 3"], vector: Float[np.ndarray, "*n 3"]) -> np.ndarray:

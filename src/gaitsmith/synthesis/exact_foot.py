@@ -164,33 +164,29 @@ def _next_corner(
     """The pitch below the present one at which another corner becomes as low; None if none."""
     pitch, corner, place = now
     arms = (figure.sole - figure.sole[corner]) @ flat.T
-    best: tuple[float, int] | None = None
-    for other, arm in enumerate(arms):
-        a, b, c = _wave(arm, axis, normal)
-        size = np.hypot(a, b)
-        if size < 1e-9 or abs(c) > size:
-            continue
-        middle, spread = np.arctan2(b, a), np.arccos(np.clip(-c / size, -1.0, 1.0))
-        for angle in (middle - spread, middle + spread):
-            angle = (angle + np.pi) % (2.0 * np.pi) - np.pi
-            # it must come down as the foot rolls on, from above
-            falls = b * np.cos(angle) - a * np.sin(angle) > 1e-9 * size
-            # a corner as far ahead as possible, of those that come down at once
-            if falls and _FLAT < angle < pitch - 1e-9 and (best is None or angle > best[0]):
-                best = (float(angle), other)
-    if best is None:
+    a, b, c = _wave(arms, axis, normal)
+    size = np.hypot(a, b)
+    level = size < 1e-9
+    size = np.where(level, 1.0, size)
+    middle, spread = np.arctan2(b, a), np.arccos(np.clip(-c / size, -1.0, 1.0))
+    angles = np.stack([middle - spread, middle + spread])
+    angles = (angles + np.pi) % (2.0 * np.pi) - np.pi
+    # it must come down as the foot rolls on, from above
+    falls = b * np.cos(angles) - a * np.sin(angles) > 1e-9 * size
+    meets = falls & ~level & (np.abs(c) <= size) & (angles > _FLAT) & (angles < pitch - 1e-9)
+    if not meets.any():
         return None
-    angle, other = best
+    first = np.where(meets, angles, -np.inf)
+    other = int(first.max(axis=0).argmax())
+    angle = float(first[:, other].max())
     return angle, other, place + about(axis, np.array(angle)) @ arms[other]
 
 
 def _wave(
-    vector: Float[np.ndarray, "3"], axis: Float[np.ndarray, "3"], normal: Float[np.ndarray, "3"]
-) -> tuple[float, float, float]:
-    """a, b, c of the height ``a cos + b sin + c`` of ``vector`` as it turns about ``axis``."""
-    along = (vector @ axis) * axis
-    return (
-        float((vector - along) @ normal),
-        float(np.cross(axis, vector) @ normal),
-        float(along @ normal),
-    )
+    vector: Float[np.ndarray, "*n 3"],
+    axis: Float[np.ndarray, "3"],
+    normal: Float[np.ndarray, "3"],
+) -> tuple[Float[np.ndarray, "*n"], Float[np.ndarray, "*n"], Float[np.ndarray, "*n"]]:
+    """a, b, c of the height ``a cos + b sin + c`` of vectors as they turn about ``axis``."""
+    along = (vector @ axis) * (axis @ normal)
+    return vector @ normal - along, vector @ np.cross(normal, axis), along

@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from gaitsmith.conventions import ahead
-
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
@@ -66,16 +64,21 @@ def solve_single_dof(
     an axis off the plane's normal can leave two acceptable roots, or none.
     """
     segment, axis = np.broadcast_arrays(segment, axis)
-    _, elevation, heading, near = np.broadcast_arrays(segment[..., 0], elevation, heading, near)
-    front = ahead(heading)
+    sx, sy, sz = segment[..., 0], segment[..., 1], segment[..., 2]
+    ax, ay, az = axis[..., 0], axis[..., 1], axis[..., 2]
+    _, elevation, heading, near = np.broadcast_arrays(sx, elevation, heading, near)
+    front_x, front_z = np.sin(heading), np.cos(heading)
     c, s = np.cos(elevation), np.sin(elevation)
-    along = (segment * axis).sum(-1, keepdims=True) * axis  # the paper's f = c' - c''
-    turning = (segment - along, np.cross(axis, segment), along)  # d, e, f
-    forward = [(part * front).sum(-1) for part in turning]
-    up = [part[..., 1] for part in turning]
+    # forward and up of the paper's d, e and f = c' - c'': across, its quarter turn, and along
+    share = sx * ax + sy * ay + sz * az
+    ahead = sx * front_x + sz * front_z
+    along = share * (ax * front_x + az * front_z)
+    quarter = (ay * sz - az * sy) * front_x + (ax * sy - ay * sx) * front_z
+    forward = [ahead - along, quarter, along]
+    up = [sy - share * ay, az * sx - ax * sz, share * ay]
     a, b, k = (c * x + s * y for x, y in zip(forward, up, strict=True))
     radius = np.hypot(a, b)
-    size = np.sqrt((segment * segment).sum(-1))
+    size = np.sqrt(sx * sx + sy * sy + sz * sz)
     blind = radius <= _BLIND * size
     ratio = -k / np.where(blind, 1.0, radius)
     middle, spread = np.arctan2(b, a), np.arccos(np.clip(ratio, -1.0, 1.0))
@@ -88,8 +91,10 @@ def solve_single_dof(
     roots = np.where(fits.all(axis=0) & (spread == 0.0), 1, fits.sum(axis=0))
     off = np.where(fits, np.abs(both - near), np.inf)
     chosen = np.where(off[0] <= off[1], both[0], both[1])
-    angle = np.where(roots > 0, chosen, _nearest(forward, up, c, s, near))
-    return SingleDof(np.where(blind, near, angle), roots)
+    if (roots == 0).any():
+        chosen = np.where(roots > 0, chosen, _nearest(forward, up, c, s, near))
+        chosen = np.where(blind, near, chosen)
+    return SingleDof(chosen, roots)
 
 
 def _nearest(
