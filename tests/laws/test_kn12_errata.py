@@ -20,7 +20,7 @@ def found():
     return decompose(rule_library())
 
 
-def test_d18_without_unwhitening_key_frames_are_wrong(found):
+def test_d25_without_unwhitening_key_frames_are_wrong(found):
     """Eq. 4 as printed: the inverse of W alone."""
     examples, one = rule_library(), found["left_arm"]
     keys = examples.keys[0]
@@ -33,14 +33,14 @@ def test_d18_without_unwhitening_key_frames_are_wrong(found):
     assert np.degrees(np.abs(printed - own).max()) > 20.0
 
 
-def test_d19_a_linear_blend_jumps_in_speed():
+def test_d26_a_linear_blend_jumps_in_speed():
     """Speed at the ends of a blend over a gap: the gap over its time, not 0."""
     u = np.array([0.0, 1e-6])
     assert np.diff(u)[0] / 1e-6 == pytest.approx(1.0)
     assert np.diff(smoothstep(u))[0] / 1e-6 < 1e-5
 
 
-def test_d20_phases_are_averaged_unwrapped():
+def test_d27_phases_are_averaged_unwrapped():
     """One walk's right foot leaves just after the stride's end, another's just before."""
     late = synthetic(0)
     early = late.with_(events=[[0.0, 0.158, 0.485, 0.66], [0.5, 0.658, 0.98, 0.16]])
@@ -54,7 +54,7 @@ def test_d20_phases_are_averaged_unwrapped():
     assert timing_of(late).ordered
 
 
-def test_d25_the_same_weights_are_another_walk_in_another_set():
+def test_d32_the_same_weights_are_another_walk_in_another_set():
     """Where they do not sum to 1."""
     parts = {"arms": PartMix({"s1": 0.5})}
     walks = [
