@@ -5,13 +5,16 @@ A reader may give a result or say that the file is broken; nothing else, and not
 
 from __future__ import annotations
 
+import io
 import tempfile
 import warnings
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 
 from gaitsmith.errors import FileFormatError, GaitsmithWarning, InvalidInputError
+from gaitsmith.ground import read_ground
 from gaitsmith.io import MARKER_READERS, READERS, TABLE_READERS
 from gaitsmith.io.bvh_parse import parse_bvh
 from gaitsmith.io.bvh_print import write_bvh_file
@@ -89,7 +92,24 @@ STO = (
     b"Coordinates\ninDegrees=no\nnColumns=3\nnRows=3\nendheader\n"
     b"time\thip\tknee\n0\t1\t2\n0.1\t2\t3\n0.2\t3\t4\n"
 )
-#: A good file of each suffix; an .asf is read with a good .amc beside it.
+OBJ = b"# two triangles\nv 0 0 0\nv 1 0.1 0\nv 1 0 1\nv 0 0.2 1\nvn 0 1 0\nf 1//1 2//1 3//1 -1\n"
+FACTS = b"cell = 0.5\norigin = [0.0, 1.0]\nheight = [0.0, 1.5]\n"
+
+
+def _png() -> bytes:
+    file = io.BytesIO()
+    levels = (np.arange(20, dtype=np.uint16) * 3000).reshape(4, 5)
+    Image.fromarray(levels).save(file, format="PNG")
+    return file.getvalue()
+
+
+def _npz() -> bytes:
+    file = io.BytesIO()
+    np.savez(file, height=np.arange(12.0).reshape(3, 4), cell=0.5, origin=np.zeros(2))
+    return file.getvalue()
+
+
+#: A good file of each suffix; an .asf is read with a good .amc beside it, a .png with its facts.
 SEEDS: dict[str, bytes] = {
     ".bvh": BVH,
     ".asf": ASF,
@@ -97,7 +117,12 @@ SEEDS: dict[str, bytes] = {
     ".trc": TRC,
     ".csv": CSV,
     ".sto": STO,
+    ".obj": OBJ,
+    ".png": _png(),
+    ".npz": _npz(),
 }
+#: Those that are grounds.
+GROUND_FILES = (".obj", ".png", ".npz")
 #: Words that mean something to some reader: what mutations put in.
 WORDS: tuple[bytes, ...] = (
     *(b"HIERARCHY", b"MOTION", b"JOINT x", b"ROOT y", b"End Site", b"OFFSET 0 0 0", b"{", b"}"),
@@ -121,7 +146,10 @@ def try_to_read(suffix: str, data: bytes) -> bool:
         if suffix == ".asf":
             path = path.with_suffix(".amc")
             path.write_bytes(AMC)
-        read = {**READERS, **MARKER_READERS, **TABLE_READERS}[path.suffix]
+        if suffix == ".png":
+            path.with_suffix(".toml").write_bytes(FACTS)
+        motions = {**READERS, **MARKER_READERS, **TABLE_READERS}
+        read = read_ground if suffix in GROUND_FILES else motions[path.suffix]
         try:
             result = read(path)
         except FileFormatError as error:
@@ -137,7 +165,7 @@ def try_to_read(suffix: str, data: bytes) -> bool:
 
 def _check(suffix: str, data: bytes, result: object, path: Path) -> None:
     """Numbers are finite, and a BVH survives being written."""
-    for field in ("root_position", "rotations", "positions", "values"):
+    for field in ("root_position", "rotations", "positions", "values", "heights"):
         assert np.isfinite(getattr(result, field, 0.0)).all()
     if suffix != ".bvh":
         return

@@ -24,6 +24,8 @@ from gaitsmith.ground.stairs import Stairs
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from jaxtyping import Shaped
+
     from gaitsmith.ground.model import Ground
 
 #: Grounds by the name that the command line and JSON use; the kit of tests/conformance picks
@@ -129,14 +131,22 @@ def _read_file(path: Path) -> Ground:
 
 def _read_npz(path: Path) -> HeightField:
     """Arrays ``height`` (rows along +Z, columns along +X), ``cell``, ``origin`` (x,z)."""
-    from zipfile import BadZipFile
+    from zipfile import ZipFile
 
+    arrays: dict[str, Shaped[np.ndarray, "..."]] = {}
     try:
-        with np.load(path, allow_pickle=False) as data:
-            arrays = {name: data[name] for name in ("height", "cell", "origin") if name in data}
-            names = list(data)
-    except (ValueError, BadZipFile, EOFError, TypeError, AttributeError) as error:
-        raise FileFormatError(path, f"not an npz file of plain arrays: {error}") from None
+        with ZipFile(path) as archive:
+            names = [name.removesuffix(".npy") for name in archive.namelist()]
+            for name in {"height", "cell", "origin"} & set(names):
+                with archive.open(f"{name}.npy") as stream:
+                    arrays[name] = np.lib.format.read_array(stream, allow_pickle=False)
+    except OSError as error:
+        if error.filename is not None:  # the disk's fault, and it says so
+            raise
+        raise FileFormatError(path, f"not a readable npz archive: {error}") from None
+    except Exception as error:  # of a damaged header NumPy raises all that Python's parser may
+        why = " ".join(str(error).split())[:200] or type(error).__name__
+        raise FileFormatError(path, f"not a readable npz archive: {why}") from None
     for name in ("height", "cell", "origin"):
         if name not in arrays:
             raise FileFormatError(
