@@ -14,7 +14,9 @@ import pytest
 from gaitsmith.body.presets import body_from
 from gaitsmith.errors import InfeasibleError, InvalidInputError
 from gaitsmith.gait.neutral import subject
-from gaitsmith.synthesis.elevation_exact import ExactWalker, Manners, elevations_of
+from gaitsmith.ground import Slope
+from gaitsmith.synthesis.elevation_exact import ExactWalker
+from gaitsmith.synthesis.exact_legs import Manners, elevations_of
 from gaitsmith.walks.elevation import FOOT
 from gaitsmith.walks.elevation_sets import built_in_sets
 
@@ -184,16 +186,16 @@ def test_toe_out_has_a_sign(degrees):
         assert np.sign(outward) == np.sign(degrees)
 
 
-class Popping(ExactWalker):
+class Popping(Manners):
     """Pelvic list with an even harmonic, which the paper does not forbid."""
 
-    def _list(self, time):
-        return super()._list(time) + np.radians(3.0) * np.cos(4.0 * np.pi * time)
+    def pelvic_list(self, time):
+        return super().pelvic_list(time) + np.radians(3.0) * np.cos(4.0 * np.pi * time)
 
 
 def test_the_paper_is_incomplete_list_must_be_odd_or_the_pelvis_jumps():
     """At the change of legs L(.5) = -L(0) is needed; the like goes for widths and toe-out."""
-    one, next_ = Popping(built_in_sets()[:1], ADULT).walk(2, straight, frames=6)
+    one, next_ = ExactWalker(built_in_sets()[:1], ADULT, Popping()).walk(2, straight, frames=6)
     assert np.abs(one.hip[-1] - next_.hip[0]).max() > 5e-3
 
 
@@ -207,6 +209,45 @@ def test_what_cannot_be_walked_is_refused_with_its_limit():
         ExactWalker(built_in_sets()[:1], ADULT).walk(1, straight, length=0.7)
     with pytest.raises(InvalidInputError, match="at least one step"):
         walker.walk(0, straight)
+
+
+SLOPES = {
+    "up": (8.0, 0.0),
+    "down": (-8.0, 0.0),
+    "across": (10.0, 0.5 * np.pi),
+    "aslant": (8.0, 0.7),
+}
+
+
+@pytest.mark.parametrize(
+    "way", [w if w == "aslant" else pytest.param(w, marks=pytest.mark.slow) for w in SLOPES]
+)
+def test_on_a_slope_shank_thigh_and_pelvis_keep_their_elevations(way):
+    """Acceptance 7.1's condition: the foot's alone counts from the ground; 7.2 and 7.3 hold."""
+    degrees, heading = SLOPES[way]
+    ground = Slope(degrees)
+    walker = ExactWalker(built_in_sets(), ADULT, ground=ground)
+    steps = walker.walk(3, lambda t: heading + np.radians(10.0) * np.sin(t), length=0.62, frames=24)
+    for legs in steps:
+        side = int(legs.stance[0])
+        seen = elevations_of(legs)
+        own, other = (walker.data(legs.weights, legs.time + part) for part in (0.0, 0.5))
+        assert np.abs(seen[:, side, 1:] - own[:, 1:]).max() < 1e-9
+        assert np.abs(seen[:, 1 - side, 1:] - other[:, 1:]).max() < 1e-9
+        sole = legs.sole[:, side]
+        above = sole[..., 1] - ground.height(sole[..., 0], sole[..., 2])
+        assert above.min() > -1e-4
+        joint = legs.joint[:, side]
+        lowest = np.minimum(
+            above.min(axis=1), joint[:, 1] - ground.height(joint[:, 0], joint[:, 2])
+        )
+        assert lowest.max() < 1e-4
+        lies = (legs.time > 0.30) & (legs.time < 0.34)
+        np.testing.assert_allclose(above[lies][:, [8, 9, 18, 19]], 0.0, atol=1e-5)
+    for one, next_ in pairwise(steps):
+        for name in ("hip", "knee", "ankle", "sole"):
+            assert np.abs(getattr(one, name)[-1] - getattr(next_, name)[0]).max() < 1e-6
+        assert np.degrees(np.abs(one.angles[-1] - next_.angles[0]).max()) < 1e-3
 
 
 def test_a_flat_foot_is_flat_on_level_ground_whatever_slopes_are_mixed():

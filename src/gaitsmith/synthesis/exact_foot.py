@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gaitsmith.geometry.curves import smoothstep
-from gaitsmith.synthesis.exact_figure import X, Y, Z, about, apply, sagittal, turn_to_elevation
+from gaitsmith.synthesis.exact_figure import (
+    X,
+    Y,
+    Z,
+    about,
+    apply,
+    elevation,
+    sagittal,
+    turn_to_elevation,
+)
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
@@ -61,6 +70,8 @@ class Landing:
         Radians, toes up, at landing.
     gap
         Meters that it landed too high; fades.
+    lead
+        Radians by which it landed with more pitch than the data ask for; fades.
     pitches, corners, places
         The corners that it rolls over: each bears from its own pitch down to the next one's;
         ``(k,)``, ``(k,)`` and ``(k, 3)``.
@@ -70,6 +81,7 @@ class Landing:
     axis: Float[np.ndarray, "3"]
     pitch: float
     gap: float
+    lead: float
     pitches: Float[np.ndarray, "k"]
     corners: Int[np.ndarray, "k"]
     places: Float[np.ndarray, "k 3"]
@@ -88,24 +100,35 @@ def land(
     turned: Float[np.ndarray, "3 3"],
     ankle: Float[np.ndarray, "3"],
     heading: float,
+    normal: Float[np.ndarray, "3"],
+    asked: float,
 ) -> Landing:
-    """A foot that comes down with its ankle at ``ankle``, on the plane y = 0.
+    """A foot that comes down with its ankle at ``ankle``, on the plane through 0 with ``normal``.
 
-    It bears on its lowest corner where that is: nothing moves along the ground.
+    It bears on its lowest corner where that is: nothing moves along the ground. ``asked`` is
+    the pitch that the data have then.
     """
-    normal = Y
     axis = sagittal(np.array(heading))[1]
     pitch = -_turn_into(turned @ X, axis, normal)
     flat = about(axis, np.array(-pitch)) @ turned
     heights = figure.sole @ (turned.T @ normal)
     corner = int(heights.argmin())
     place = ankle + turned @ figure.sole[corner]
-    gap = float(place[1])
+    gap = float(place @ normal) / float(normal[1])
     rows = [(pitch, corner, place)]
     while (event := _next_corner(figure, flat, axis, normal, rows[-1])) is not None:
         rows.append(event)
     pitches, corners, places = (list(column) for column in zip(*rows, strict=True))
-    return Landing(flat, axis, pitch, gap, np.array(pitches), np.array(corners), np.array(places))
+    return Landing(
+        flat,
+        axis,
+        pitch,
+        gap,
+        pitch - asked,
+        np.array(pitches),
+        np.array(corners),
+        np.array(places),
+    )
 
 
 def stand(
@@ -117,11 +140,15 @@ def stand(
 ) -> StanceFoot:
     """The foot at ``time`` (of its stride, rising from 0) with elevations ``wanted``.
 
-    [SM01] section 4.1. A foot that rolls never rolls back, and toes never dig in: where data
-    ask for that, the elevation is not kept.
+    Those count from the ground: flat is 90 deg whatever its slope. [SM01] section 4.1. A foot
+    that rolls never rolls back, and toes never dig in: where data ask for that, the elevation
+    is not kept.
     """
     axis = np.broadcast_to(landing.axis, (len(time), 3))
     front = np.broadcast_to(landing.flat @ X, (len(time), 3))
+    fades = 1.0 - smoothstep(time / _FADE)
+    seen = elevation(front, sagittal(heading)[0]) - 0.5 * np.pi
+    wanted = wanted + seen + landing.lead * fades
     pitch = turn_to_elevation(front, axis, wanted, heading, landing.pitch)
     pitch = np.minimum.accumulate(np.clip(pitch, 0.0, landing.pitch))
     pitch = np.where(pitch < _FLAT, 0.0, pitch)
@@ -138,8 +165,7 @@ def stand(
     joint = landing.lies(figure) + landing.flat @ figure.joint
     ankle = np.where(rolls[:, None], on_heel, joint - apply(turned, figure.joint))
     bears = np.where(rolls[:, None], place, joint)
-    drop = landing.gap * smoothstep(time / _FADE)
-    down = drop[:, None] * Y
+    down = (landing.gap * (1.0 - fades))[:, None] * Y
     toes = np.where(rolls[:, None, None], rolled, landing.flat)
     return StanceFoot(turned, toes, ankle - down, toe, np.where(rolls, corner, -1), bears - down)
 
