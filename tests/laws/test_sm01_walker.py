@@ -205,6 +205,8 @@ def test_what_cannot_be_walked_is_refused_with_its_limit():
         walker.walk(1, straight, length=1.3)
     with pytest.raises(InfeasibleError, match=r"step 1: the stance ankle .* turn less"):
         walker.walk(1, lambda t: np.radians(120.0) * t, frames=8)
+    with pytest.raises(InfeasibleError, match=r"no step of 0.6 m that rises by 0.280 m"):
+        ExactWalker(built_in_sets(), ADULT, ground=Slope(25.0)).walk(1, straight, length=0.6)
     with pytest.raises(InvalidInputError, match="three or more sets"):
         ExactWalker(built_in_sets()[:1], ADULT).walk(1, straight, length=0.7)
     with pytest.raises(InvalidInputError, match="at least one step"):

@@ -28,9 +28,10 @@ if TYPE_CHECKING:
     from gaitsmith.ground import Slope
     from gaitsmith.walks.elevation import ElevationSet
 
-#: Phase of the stride at which new weights are reached; how often a landing is aimed again.
-#: How near, meters.
-_SETTLED, _AIMS, _AIMED = 0.46, 8, 1e-6
+#: Phase of the stride at which new weights are reached.
+_SETTLED = 0.46
+#: How often a landing is aimed again until it is so near (m), and what of it is a miss.
+_AIMS, _AIMED, _MISSED = 8, 1e-6, 1e-4
 
 
 class _State(NamedTuple):
@@ -139,7 +140,7 @@ class ExactWalker:
             )
 
     def _begun(self, heading: float, length: float | None) -> _State:
-        """The state at a left heel strike of a walk that has gone on for two steps."""
+        """The state at a left heel strike of a walk that has gone on for some steps."""
         weights = np.eye(len(self.sets))[0]
         pitch = float(self.sets[0].angles[0, FOOT]) - 0.5 * np.pi
         turned = about(Y, np.array(heading)) @ about(Y, np.array(self.manners.toe_out))
@@ -171,7 +172,7 @@ class ExactWalker:
         rise = -length * float(front @ self._up) / float(self._up[1])
         wanted, end = np.array([length, rise]), np.array([0.5])
         bias = state.bias
-        aimed, weights = state, state.weights
+        aimed, weights, missed = state, state.weights, np.zeros(2)
         for _ in range(_AIMS):
             weights = self._mixer.find((wanted + bias)[None]).weights[0]
             aimed = state._replace(bias=bias)
@@ -181,6 +182,13 @@ class ExactWalker:
             if np.abs(missed).max() < _AIMED:
                 break
             bias = bias + missed
+        else:
+            if np.abs(missed).max() > _MISSED:
+                raise InfeasibleError(
+                    f"step {index + 1}: the elevation data take no step of {length:g} m that rises "
+                    f"by {rise:.3f} m on this body; the nearest is {length - missed[0]:.3f} m and "
+                    f"{rise - missed[1]:.3f} m"
+                )
         return aimed, weights
 
     def _step(
