@@ -7,7 +7,13 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaitsmith.errors import GaitsmithError, GaitsmithWarning, InfeasibleError, InvalidInputError
+from gaitsmith.errors import (
+    FileFormatError,
+    GaitsmithError,
+    GaitsmithWarning,
+    InfeasibleError,
+    InvalidInputError,
+)
 from gaitsmith.learning import CLIPS, body_of, learn
 from gaitsmith.style.composition import composition
 from gaitsmith.style.examples import examples_of
@@ -78,21 +84,33 @@ def compose(
     True
     """
     given = dict(styles or {})
-    base = Path()
     if isinstance(recipe, str | Path):
-        base = Path(recipe).parent
-        asked = read_recipe(Path(recipe)) if not given else _read_with(Path(recipe), given)
-    elif isinstance(recipe, Recipe):
+        path = Path(recipe)
+        asked = read_recipe(path) if not given else _read_with(path, given)
+        try:
+            return _composed(asked, given, path.parent, name)
+        except InvalidInputError as error:  # what is wrong is in the file
+            raise FileFormatError(path, str(error)) from None
+    if isinstance(recipe, Recipe):
         asked = recipe
     else:
         asked = recipe_from_dict(_with_styles(recipe, given))
+    return _composed(asked, given, Path(), name)
+
+
+def _composed(
+    asked: Recipe,
+    given: Mapping[str, str | Path | LearnedGait],
+    base: Path,
+    name: str | None,
+) -> LearnedGait:
     gaits = _gaits(asked, given, base)
     body = gaits[asked.input].body if asked.body is None else body_of(_beside(asked.body, base))
     examples = examples_of({n: g.cycle for n, g in gaits.items()}, body)
     found = composition(examples, asked.mix)
     for note in found.notes:
         if not note.startswith("leg weights"):
-            warnings.warn(note, GaitsmithWarning, stacklevel=2)
+            warnings.warn(note, GaitsmithWarning, stacklevel=3)
     sources = [_source_of(n, asked.styles.get(n), g) for n, g in gaits.items()]
     title = name or asked.name
     cycle = found.cycle.with_(
@@ -121,8 +139,6 @@ def _with_styles(
 
 def _read_with(path: Path, given: Mapping[str, str | Path | LearnedGait]) -> Recipe:
     import tomllib
-
-    from gaitsmith.errors import FileFormatError
 
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))

@@ -185,6 +185,17 @@ def test_walks_that_cannot_be_had_are_named_all(tmp_path):
         compose({"styles": {"a": "saad"}, "root": {"weights": {"a": 1.0}}})
 
 
+def test_weights_that_do_not_fit_the_components_are_the_files_fault(run, tmp_path):
+    path = tmp_path / "r.toml"
+    path.write_text(
+        'styles = { a = "sad", b = "happy" }\nroot.weights.a = 1.0\narms.weights.a = [1, 2]\n'
+    )
+    code, _, err = run("compose", path, "-o", "x.gait.json")
+    assert code == 1
+    assert "r.toml" in err
+    assert "but 'a' has 2 weights there" in err
+
+
 def test_not_toml_is_said(tmp_path):
     path = tmp_path / "r.toml"
     path.write_text("this is not TOML")

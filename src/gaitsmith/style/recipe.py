@@ -199,11 +199,8 @@ def _unmapped(mix: Mix, who: str, styles: Mapping[str, Style]) -> Iterator[str]:
         if name not in styles:
             known = ", ".join(styles) or "none"
             close = get_close_matches(name, styles, n=1)
-            hint = f" Did you mean {close[0]!r}?" if close else ""
-            yield (
-                f"{name!r} is used but not in [styles] (there: {known}); say which walk it is."
-                f"{hint}"
-            )
+            hint = f", did you mean {close[0]!r}?" if close else ""
+            yield f"{name!r} is used but not in [styles] (there: {known}): say which walk it is{hint}"
 
 
 def _table(where: str, value: Any, wrong: list[str]) -> dict[str, Any]:
