@@ -91,11 +91,9 @@ def compose(
             return _composed(asked, given, path.parent, name)
         except InvalidInputError as error:  # what is wrong is in the file
             raise FileFormatError(path, str(error)) from None
-    if isinstance(recipe, Recipe):
-        asked = recipe
-    else:
-        asked = recipe_from_dict(_with_styles(recipe, given))
-    return _composed(asked, given, Path(), name)
+    if not isinstance(recipe, Recipe):
+        recipe = recipe_from_dict(_with_styles(recipe, given))
+    return _composed(recipe, given, Path(), name)
 
 
 def _composed(

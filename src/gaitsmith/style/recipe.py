@@ -200,7 +200,9 @@ def _unmapped(mix: Mix, who: str, styles: Mapping[str, Style]) -> Iterator[str]:
             known = ", ".join(styles) or "none"
             close = get_close_matches(name, styles, n=1)
             hint = f", did you mean {close[0]!r}?" if close else ""
-            yield f"{name!r} is used but not in [styles] (there: {known}): say which walk it is{hint}"
+            yield (
+                f"{name!r} is used but not in [styles] (there: {known}): say which walk it is{hint}"
+            )
 
 
 def _table(where: str, value: Any, wrong: list[str]) -> dict[str, Any]:
