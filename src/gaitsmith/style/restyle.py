@@ -87,19 +87,19 @@ def restyled(rule: Rule) -> Cycle:
     skeleton = skeleton_of(body)
     rotations = np.array(turned)
     chest = _trunk(neutral, rotations, pelvis, phase, rule)
-    _head(neutral, rotations, chest, phase, rule)
+    _head(neutral, rotations, turned, chest, phase, rule)
     _arms(neutral, rotations, rule)
     rotations[:, 0] = pelvis
-    way = _center(legs, seen, center[:, 0], step, rule, body)
+    way = _center(legs, seen, center[:, 0], rule, body)
     ankle, pitch, bend = _feet(legs, seen, step, rule, body)
-    way[:, 1] -= _too_high(body, way, pelvis, ankle, seen)
+    way[:, 1] -= _too_high(body, way, pelvis, ankle)
     _pose_legs(body, rotations, way, pelvis, ankle, pitch, bend, rule)
     way[:, 2] -= 2.0 * step * phase
     way[:, 2] -= way[:, 2].mean()
     way, rotations = _smooth(way), _smooth_turns(rotations)
     own = np.array([0.0, *legs.marks])
     contacts = np.stack([own, own + 0.5])
-    events = _retimed(contacts.ravel(), off + rule.double, off, back=True).reshape(2, 4)
+    events = _retimed(contacts.ravel(), off + rule.double, off).reshape(2, 4)
     return Cycle(
         skeleton=skeleton,
         center=way,
@@ -173,17 +173,11 @@ def _legs(body: Body, step: float) -> _Legs:
     )
 
 
-def _retimed(
-    phase: Float[np.ndarray, "n"], old: float, new: float, *, back: bool = False
-) -> Float[np.ndarray, "n"]:
-    """Phases of a walk whose other foot leaves at ``old`` for those of one where it is ``new``."""
-    if back:
-        old, new = new, old
+def _retimed(phase: Float[np.ndarray, "n"], old: float, new: float) -> Float[np.ndarray, "n"]:
+    """Phases of a walk whose toe-offs follow heel strikes by ``old``, for one where by ``new``."""
     own, other = (np.array([0.0, off, 0.5, 0.5 + off]) for off in (new, old))
     grid = np.concatenate([own - 1.0, own, own + 1.0, own + 2.0])
     values = np.concatenate([other - 1.0, other, other + 1.0, other + 2.0])
-    if back:
-        grid, values = values, grid
     return pchip(grid, values[:, None], phase)[:, 0]
 
 
@@ -204,7 +198,6 @@ def _center(
     legs: _Legs,
     seen: Float[np.ndarray, "K"],
     sideways: Float[np.ndarray, "K"],
-    step: float,
     rule: Rule,
     body: Body,
 ) -> Float[np.ndarray, "K 3"]:
@@ -240,9 +233,8 @@ def _feet(
         stands = rolled_ankle(body.foot, new, rule.off * meta)
         old = rolled_ankle(body.foot, pitch, meta)
         # the swing leaves from and comes to where the changed foot is
-        ends = np.array([toe_off, 1.0])
-        gone = _moved(legs, body, ends[:1], rule.off, 0.0)
-        come = _moved(legs, body, np.zeros(1), 1.0, strike)
+        gone = _moved(legs, body, toe_off, rule.off, 0.0)
+        come = _moved(legs, body, 0.0, 1.0, strike)
         swing = ankle + leave[:, None] * gone + land[:, None] * come
         bump = np.where(down, 0.0, np.sin(np.pi * np.clip(u, 0.0, 1.0)) ** 2)
         swing[:, 1] += bump * rule.lift * body.leg_length
@@ -256,9 +248,10 @@ def _feet(
 
 
 def _moved(
-    legs: _Legs, body: Body, at: Float[np.ndarray, "1"], off: float, strike: float
+    legs: _Legs, body: Body, own: float, off: float, strike: float
 ) -> Float[np.ndarray, "1 2"]:
     """How far a change of sole angles moves the ankle of a foot that bears."""
+    at = np.array([own])
     pitch, meta = _read(legs, legs.pitch, at), _read(legs, legs.meta, at)
     new = off * pitch if strike == 0.0 else pitch + strike
     return rolled_ankle(body.foot, new, off * meta) - rolled_ankle(body.foot, pitch, meta)
@@ -269,7 +262,6 @@ def _too_high(
     way: Float[np.ndarray, "K 3"],
     pelvis: Float[np.ndarray, "K 4"],
     ankle: Float[np.ndarray, "K 2 3"],
-    seen: Float[np.ndarray, "K"],
 ) -> Float[np.ndarray, "K"]:
     """How far the hips must come down so that both legs reach, smooth, meters."""
     reach = REACH * body.leg_length
@@ -316,7 +308,7 @@ def _pelvis(
     neutral: Cycle, turned: Float[np.ndarray, "K 4"], rule: Rule
 ) -> Float[np.ndarray, "K 4"]:
     mean = mean_rotation(neutral.rotations[:, 0])
-    away = log(multiply(inverse(mean), turned)) * np.array([1.0, rule.turn, rule.list_])
+    away = log(multiply(inverse(mean), turned)) * np.array([1.0, rule.turn, rule.drop])
     return multiply(multiply(about("x", np.radians(rule.tilt)), mean), exp(away))
 
 
@@ -352,24 +344,28 @@ def _trunk(
 def _head(
     neutral: Cycle,
     rotations: Float[np.ndarray, "K J 4"],
+    before: Float[np.ndarray, "K J 4"],
     chest: Float[np.ndarray, "K 4"],
     phase: Float[np.ndarray, "K"],
     rule: Rule,
 ) -> None:
-    index = neutral.skeleton.index
-    names = [*trunk_names(neutral), "neck", "head"]
-    before = neutral.rotations[:, 0]
-    for name in names:
-        before = multiply(before, neutral.rotations[:, index(name)])
-    mean = mean_rotation(before)
-    own = log(multiply(inverse(mean), before))
-    # the neutral head at the neutral instants, as the rest of the upper body
-    away = np.stack([np.interp(phase, phase, own[:, i]) for i in range(3)], axis=-1) * rule.nod
+    """Poses neck and head, which move in space as the neutral ones, upon any trunk."""
+    mean = mean_rotation(_head_in_space(neutral, neutral.rotations))
+    away = rule.nod * log(multiply(inverse(mean), _head_in_space(neutral, before)))
     tip = about("z", -np.radians(rule.tip) * np.sin(2.0 * np.pi * phase))
     wanted = multiply(tip, multiply(about("x", np.radians(rule.head)), multiply(mean, exp(away))))
     share = exp(0.5 * log(multiply(inverse(chest), wanted)))
-    rotations[:, index("neck")] = share
-    rotations[:, index("head")] = share
+    for name in ("neck", "head"):
+        rotations[:, neutral.skeleton.index(name)] = share
+
+
+def _head_in_space(
+    neutral: Cycle, rotations: Float[np.ndarray, "K J 4"]
+) -> Float[np.ndarray, "K 4"]:
+    out = rotations[:, 0]
+    for name in (*trunk_names(neutral), "neck", "head"):
+        out = multiply(out, rotations[:, neutral.skeleton.index(name)])
+    return out
 
 
 def _arms(neutral: Cycle, rotations: Float[np.ndarray, "K J 4"], rule: Rule) -> None:
@@ -382,7 +378,7 @@ def _arms(neutral: Cycle, rotations: Float[np.ndarray, "K J 4"], rule: Rule) -> 
             rotations[:, joint] = multiply(mean, exp(size * away))
         shoulder, upper, lower = (index(f"{name}{b}") for b in ("Shoulder", "UpperArm", "LowerArm"))
         raised = about("z", sign * np.radians(rule.shrug))
-        drawn = about("y", -sign * np.radians(rule.round_))
+        drawn = about("y", -sign * np.radians(rule.hunch))
         moved = multiply(drawn, raised)
         rotations[:, shoulder] = multiply(moved, rotations[:, shoulder])
         # arms hang as they did from the moved shoulder, and plumb when the trunk leans

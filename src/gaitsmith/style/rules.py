@@ -31,7 +31,7 @@ class Rule:
     strike, off, lift
         Added to the pitch of the sole at heel strike (negative: flatter, then toes first); pitch
         at toe-off; height of the swinging foot added.
-    tilt, turn, list_
+    tilt, turn, drop
         Pelvis: forward tilt added; turns about the vertical and drops of the hips.
     lean, slump, twist, roll
         Trunk: forward lean, bend of the upper back; turns of the chest; sway to the bearing foot.
@@ -41,7 +41,7 @@ class Rule:
         Upper arms: swing; abduction, flexion and inward roll added.
     elbow, elbow_swing
         Flexion of the elbow added; its movement.
-    shrug, round_
+    shrug, hunch
         Shoulders: raised; drawn forward.
     knees_out
         Knees turned out against half way between pelvis and foot.
@@ -63,7 +63,7 @@ class Rule:
     lift: float = 0.0
     tilt: float = 0.0
     turn: float = 1.0
-    list_: float = 1.0
+    drop: float = 1.0
     lean: float = 0.0
     slump: float = 0.0
     twist: float = 1.0
@@ -78,7 +78,7 @@ class Rule:
     elbow: float = 0.0
     elbow_swing: float = 1.0
     shrug: float = 0.0
-    round_: float = 0.0
+    hunch: float = 0.0
     knees_out: float = 0.0
 
 
@@ -103,7 +103,7 @@ RULES: dict[str, Rule] = {
         roll_in=14.0,
         elbow=38.0,
         shrug=8.0,
-        round_=6.0,
+        hunch=6.0,
     ),
     "careful": Rule(
         about="as on ice: short, flat-footed, wide steps, arms held out a little",
@@ -140,7 +140,7 @@ RULES: dict[str, Rule] = {
         lift=0.065,
         off=1.1,
         turn=1.3,
-        list_=1.2,
+        drop=1.2,
         lean=-2.0,
         twist=1.9,
         roll=3.0,
@@ -167,7 +167,7 @@ RULES: dict[str, Rule] = {
         off=0.75,
         tilt=4.0,
         turn=0.5,
-        list_=0.8,
+        drop=0.8,
         lean=7.0,
         slump=16.0,
         twist=0.5,
@@ -177,7 +177,7 @@ RULES: dict[str, Rule] = {
         arms_out=4.0,
         elbow=22.0,
         elbow_swing=0.6,
-        round_=12.0,
+        hunch=12.0,
         knees_out=4.0,
     ),
     "fearful": Rule(
@@ -202,7 +202,7 @@ RULES: dict[str, Rule] = {
         elbow=72.0,
         elbow_swing=0.8,
         shrug=14.0,
-        round_=14.0,
+        hunch=14.0,
         width=-0.01,
     ),
     "happy": Rule(
@@ -225,7 +225,7 @@ RULES: dict[str, Rule] = {
         elbow=6.0,
         elbow_swing=1.5,
         shrug=-3.0,
-        round_=-6.0,
+        hunch=-6.0,
         arms_forward=6.0,
     ),
     "hurried": Rule(
@@ -264,7 +264,7 @@ RULES: dict[str, Rule] = {
         arms_out=17.0,
         elbow=6.0,
         shrug=2.0,
-        round_=-14.0,
+        hunch=-14.0,
     ),
     "sad": Rule(
         about="slow, short steps, slumped, head down, arms hanging still, swaying",
@@ -288,7 +288,7 @@ RULES: dict[str, Rule] = {
         elbow=-8.0,
         elbow_swing=0.4,
         shrug=-4.0,
-        round_=17.0,
+        hunch=17.0,
     ),
     "sneaky": Rule(
         about="creeping: low, leaning, high slow feet that land toes first, hands ready",
@@ -314,7 +314,7 @@ RULES: dict[str, Rule] = {
         elbow=62.0,
         elbow_swing=0.8,
         shrug=8.0,
-        round_=10.0,
+        hunch=10.0,
         knees_out=6.0,
     ),
     "swagger": Rule(
@@ -367,6 +367,6 @@ RULES: dict[str, Rule] = {
         arms_out=-1.0,
         elbow=-12.0,
         shrug=-6.0,
-        round_=15.0,
+        hunch=15.0,
     ),
 }
