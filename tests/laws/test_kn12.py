@@ -256,12 +256,12 @@ def test_a10_found_legs_of_measured_styles(ten, root, legs):
     assert max(alone.after) ** 2 < 1e-10
 
 
-def walked(examples, mix, **asked):
+def walked(examples, mix, fps=120, **asked):
     cycle = mixed(examples, mix).cycle
     gait = gait_of_cycle(cycle, examples.body, name="mix")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", GaitsmithWarning)  # of feet that would touch
-        return walk(gait=gait, fps=120, **asked)
+        return walk(gait=gait, fps=fps, **asked)
 
 
 @pytest.mark.parametrize("pair", [(0, 1), pytest.param((3, 8), marks=pytest.mark.slow)])
@@ -274,9 +274,11 @@ def test_a11_mixes_walk_with_still_feet(examples, pair):
 
 @pytest.mark.slow
 def test_a11_all_pairs_walk(examples):
+    if examples is library():
+        pytest.skip("its legs are those of one walk: test_a11_mixes_walk_with_still_feet has them")
     for pair in combinations(examples.names, 2):
         mix = Mix(dict.fromkeys(pair, 0.5))
-        motion = walked(examples, mix, path="0,0 0,2 1.5,3.5")
+        motion = walked(examples, mix, fps=60, path="0,0 0,2 1.5,3.5")
         assert broken(motion, but=("unflagged_bearing",)) == {}, pair
 
 
