@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.geometry.curves import smoothstep
+from gaitsmith.plan.slope_steps import BLEND, DOWNHILL, UPHILL
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -14,11 +15,6 @@ if TYPE_CHECKING:
     from gaitsmith.ground import Ground
     from gaitsmith.plan.paths import Path
 
-#: [SM01] Eqs. 11 and 12: step length in meters, and its change per degree, of pedestrians (leg
-#: 0.92 m). Downhill slopes count negative (the printed sign would lengthen those steps).
-DOWNHILL, UPHILL = (0.627, 0.0075), (0.623, -0.0019)
-#: Degrees around level over which the two lines, 4 mm apart there, are blended.
-BLEND = 1.0
 #: The lines are of streets; beyond so many degrees they are not trusted.
 STEEPEST = 20.0
 #: Loss of preferred speed per degree: uphill up to 5 deg and beyond, downhill.
