@@ -121,3 +121,11 @@ def test_a_lean_stays_until_it_is_taken_back():
     lean -= lean[0]
     assert lean[70] == pytest.approx(20.0, abs=0.5)
     assert lean[-1] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_hips_come_down_in_time_before_a_walk_that_follows_a_short_stand():
+    """The walk asks for lower hips; a tenth of a second of standing is not a whole step's time."""
+    do = "turn left 291.7; follow -0.442,-0.477 0.291,-1.275"
+    motion = walk(do=do, body=2.05, gait="winter", fps=120)
+    height = motion.root_position[:, 1]
+    assert np.abs(np.diff(height, 2)).max() * 120.0**2 < 5.0  # m/s2; 25 before, 2.4 now

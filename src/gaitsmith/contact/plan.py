@@ -94,11 +94,14 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
         ankle[-1, swing] = targets.at(-1).ankle(body.foot, last, 0.0)
         slack[-1, swing] = 0.0
     spread = SPREAD if isinstance(ground, Flat) else UNEVEN_SPREAD
-    down_by = lowering(walk.at, hip, ankle, slack, leg_length=body.leg_length, spread=spread)
+    when = _when(walk, steps)
+    down_by = lowering(
+        walk.at, hip, ankle, slack, leg_length=body.leg_length, spread=spread, when=when
+    )
     walk.curves["center"][:, 1] -= down_by
     hip[..., 1] -= down_by[:, None]
     extra = _rear_raise(walk, body, stands, rear, hip)
-    if _lower_the_rest(walk, body, stands, rear, extra, hip):
+    if _lower_the_rest(walk, body, stands, rear, extra, hip, when):
         extra = _rear_raise(walk, body, stands, rear, hip)  # of hips that are lower: less
     _raise_rear_heels(walk, rear, extra)
     _lock(walk, body, stands, rear)
@@ -108,6 +111,15 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
     return ContactPlan.of(walk, stands, targets, body)
 
 
+def _when(walk: Proposal, steps: Sequence[ReferenceStep]) -> Float[np.ndarray, "M"]:
+    """Time of the nodes, in usual steps."""
+    shares = np.array([s.share for s in steps])
+    if (shares == 1.0).all():
+        return walk.at
+    begin = np.concatenate([[0.0], np.cumsum(shares)])
+    return begin[walk.step] + shares[walk.step] * walk.phase
+
+
 def _lower_the_rest(
     walk: Proposal,
     body: Body,
@@ -115,6 +127,7 @@ def _lower_the_rest(
     rear: Bool[np.ndarray, "M 2"],
     extra: Float[np.ndarray, "k"],
     hip: Float[np.ndarray, "M 2 3"],
+    when: Float[np.ndarray, "M"],
 ) -> bool:
     """Lower the hips once more where raising the heel could not bring the rear ankle near.
 
@@ -131,7 +144,7 @@ def _lower_the_rest(
     if not short.any():
         return False
     slack = np.where(short, 0.0, np.inf)
-    down_by = lowering(walk.at, hip, ankle, slack, leg_length=body.leg_length)
+    down_by = lowering(walk.at, hip, ankle, slack, leg_length=body.leg_length, when=when)
     walk.curves["center"][:, 1] -= down_by
     hip[..., 1] -= down_by[:, None]
     return True

@@ -59,6 +59,7 @@ def lowering(
     *,
     leg_length: float,
     spread: float = SPREAD,
+    when: Float[np.ndarray, "M"] | None = None,
 ) -> Float[np.ndarray, "M"]:
     """How far the hips must come down at each node, meters, smooth over twice ``spread`` steps.
 
@@ -72,6 +73,8 @@ def lowering(
         Meters by which each ankle may still follow; inf where the foot does not bear.
     leg_length
         Thigh + shin, meters.
+    when
+        Time of the nodes in usual steps; None: ``at``.
 
     Raises
     ------
@@ -95,9 +98,10 @@ def lowering(
     need = np.maximum(0.0, -np.where(bears, top + np.where(bears, slack, 0.0), np.inf).min(-1))
     if not need.any():
         return np.zeros(len(at))
-    first, last = at[0] * PER_STEP, at[-1] * PER_STEP
+    when = at if when is None else when
+    first, last = when[0] * PER_STEP, when[-1] * PER_STEP
     cells = np.zeros(int(np.ceil(last - first)) + 2)
-    where = at * PER_STEP - first
+    where = when * PER_STEP - first
     for cell in (np.floor(where).astype(int), np.ceil(where).astype(int)):
         np.maximum.at(cells, cell, need)
     half = int(np.ceil(spread * PER_STEP))

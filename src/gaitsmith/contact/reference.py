@@ -41,6 +41,9 @@ class ReferenceStep:
         ``(2, 3)``, ``(2,)`` world: N and heading where [left, right] stand as the step begins.
     target, target_heading
         ``(3,)``, radians: where the swing foot lands at phase 1.
+    share
+        Seconds that it takes over those of a usual step, at most 1: what is smooth over a part of
+        a step is so over as much of its time.
     speed_change
         What is added to the speed of the center at phase 0 and at phase 1, meters per step, so
         that it joins its neighbors; the way there is a cubic that moves neither end.
@@ -59,6 +62,7 @@ class ReferenceStep:
     target_heading: float
     speed_change: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] | None = None
     raising: float = 1.0
+    share: float = 1.0
 
     def __post_init__(self) -> None:
         """Check the places, and that the foot leaves on a sample."""

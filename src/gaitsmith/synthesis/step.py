@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
@@ -23,6 +24,10 @@ if TYPE_CHECKING:
     from gaitsmith.ground import Ground
     from gaitsmith.plan.footsteps import PlannedStep
     from gaitsmith.plan.timeline import Timeline
+
+
+#: Seconds of a usual step: a shorter while of standing counts as the part of one that it is.
+USUAL = 0.5
 
 
 @dataclass(frozen=True)
@@ -191,6 +196,10 @@ def prepare_walk(
 
         attention = Attention(body, plan.looks, plan.leans)
         references = balanced(references, plan.kinds, clock, attention)
+    references = [
+        r.with_(share=min(1.0, seconds / USUAL)) if kind == "stand" else r
+        for r, kind, seconds in zip_longest(references, plan.kinds, plan.durations)
+    ]
     contact = plan_contact(references, body, ground)
     return PreparedWalk(plan, contact, clock, attention, tuple(references))
 
