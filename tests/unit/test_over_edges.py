@@ -69,6 +69,18 @@ def test_toes_bend_until_their_tip_touches():
     assert tip[1] == pytest.approx(float(field.height(tip[0], tip[2])), abs=1e-9)
 
 
+def test_toes_just_over_an_edge_reach_over_it_and_do_not_bend_round():
+    """The edge of a field is a ramp of one cell: the tip is over its upper part."""
+    height = np.zeros((201, 11))
+    height[:100] = 0.05
+    field = HeightField(height, 0.02, (-0.1, -1.0))
+    edge = -1.0 + 99 * 0.02
+    n = np.array([[0.0, 0.0, edge + 0.006 - FOOT.ball - FOOT.toes]])
+    stand = standing(n, np.zeros(1), field, FOOT)
+    assert stand.bears.tolist() == [[True, True, False]]
+    assert stand.toes.tolist() == [0.0]
+
+
 def test_on_a_tread_the_foot_stands_and_at_its_edges_it_hangs():
     stairs = Stairs(0.17, 0.30, 5)
     z = 1.0 + np.array([0.08, 0.03, -0.04, 0.16])

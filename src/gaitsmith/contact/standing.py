@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Ground that is so much (m) below the tip of the toes of a flat foot is beyond an edge.
 DROP = 0.02
+#: Toes whose line would be so deep (m) in the ground bend round an edge.
+CUT = 0.004
 #: Rounds in which the bend of the toes is found; on a plane the first is exact.
 ROUNDS = 24
 #: A bend of the toes by less (radians) is none.
@@ -51,9 +53,31 @@ def standing(
     bears[..., HEEL], bears[..., BALL] = plane.bears[..., 0], plane.bears[..., 1]
     tip = place + (foot.ball + foot.toes) * forward
     bears[..., TOE] = tip[..., 1] - ground.height(tip[..., 0], tip[..., 2]) < DROP
+    # toes that would have to bend round an edge reach over it
+    bears[..., TOE] &= _cut(ground, place, forward, normal, toes, foot) < CUT
     if bears.all():
         return Footholds(place, forward, normal, tilt, toes)
     return Footholds(place, forward, normal, tilt, np.where(bears[..., TOE], toes, 0.0), bears)
+
+
+def _cut(
+    ground: Ground,
+    place: Float[np.ndarray, "*n 3"],
+    forward: Float[np.ndarray, "*n 3"],
+    normal: Float[np.ndarray, "*n 3"],
+    raised: Float[np.ndarray, "*n"],
+    foot: Foot,
+) -> Float[np.ndarray, "*n"]:
+    """Meters that the sole of toes that are raised so is below the ground, between its ends."""
+    ball = place + foot.ball * forward
+    c, s, high = np.cos(raised), np.sin(raised), foot.toe_joint_height
+    along = (foot.toes * c + high * s)[..., None] * forward
+    along = along + (foot.toes * s + high * (1.0 - c))[..., None] * normal
+    deepest = np.zeros(place.shape[:-1])
+    for share in np.linspace(0.0, 1.0, 9)[1:-1]:
+        at = ball + share * along
+        deepest = np.maximum(deepest, ground.height(at[..., 0], at[..., 2]) - at[..., 1])
+    return deepest
 
 
 def _toes(

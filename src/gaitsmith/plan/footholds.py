@@ -194,6 +194,11 @@ def _cheapest(
     height = np.stack([f.height for f in places.footings])
     hanging, sunk = allowed
     free = np.stack([f.stands & (f.hangs <= hanging) & (f.sinks <= sunk) for f in places.footings])
+    for end in (0, -1):  # where the path begins and ends there is no choice
+        free[:, end] = [
+            f.stands[end] & (f.hangs[end] <= hanging) & (f.sinks[end] <= ON_RIDGES)
+            for f in places.footings
+        ]
     free &= np.stack([f.slope <= np.tan(STEEPEST) for f in places.footings])
     own = np.stack(
         [
