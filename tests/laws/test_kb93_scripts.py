@@ -129,3 +129,11 @@ def test_hips_come_down_in_time_before_a_walk_that_follows_a_short_stand():
     motion = walk(do=do, body=2.05, gait="winter", fps=120)
     height = motion.root_position[:, 1]
     assert np.abs(np.diff(height, 2)).max() * 120.0**2 < 5.0  # m/s2; 25 before, 2.4 now
+
+
+def test_hips_that_balance_a_lean_change_over_while_no_walk_starts_or_stops():
+    """At the very ends of a walk its clock stands still: what moved in time there would jolt."""
+    motion = walk(do="lean right 16; walk to -1.5,-0.5; turn left 90", gait="winter", fps=120)
+    moved = np.linalg.norm(np.diff(motion.root_position, 2, axis=0), axis=1) * 120.0**2
+    near = np.array([np.percentile(moved[max(0, i - 60) : i + 61], 75) for i in range(len(moved))])
+    assert (moved / np.maximum(near, 3.0)).max() < 3.0

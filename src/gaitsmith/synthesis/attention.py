@@ -156,8 +156,9 @@ def balanced(
     def shift(times: Float[np.ndarray, "n"]) -> tuple[np.ndarray, np.ndarray]:
         out = attention.over_time(times, moves)
         for begin, end in spans.tolist():
-            inside = smoothstep((times - begin) / EASE + 0.5) * smoothstep(
-                (end - times) / EASE + 0.5
+            # before it starts and after it stops: at the very ends its clock stands still
+            inside = smoothstep((times - begin) / EASE + 1.0) * smoothstep(
+                (end - times) / EASE + 1.0
             )
             out[:, 0] *= 1.0 - (1.0 - WALKING) * inside
         return out, np.zeros(len(times))
