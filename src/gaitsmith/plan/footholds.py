@@ -48,9 +48,9 @@ LAST_STEP = 0.15
 RISE, HANGING, CROWDED, ROUGH = 60.0, 3.0, 0.25, 0.02
 #: Steps longer than usual cost so many times more than shorter ones.
 LONGER = 4.0
-#: Usual step over a full rise is shorter by this. A foot that came down from a drop (over leg)
-#: pays so much for a riser close behind its heel, which has to pass it.
-SHORTER, LEAST_DROP, DROP_BEHIND = 0.35, 0.03, 0.6
+#: Usual step over a full rise is shorter by this. A foot pays so much for a riser close behind
+#: its heel, which has to pass it as it comes down.
+SHORTER, BEHIND = 0.35, 0.6
 #: Samples, 5 mm apart, over which a jump of the ground is told from a slope.
 WINDOW = 8
 #: Time of a step up or down over one on the level, at a rise of a fifth of the leg.
@@ -232,7 +232,7 @@ def _cheapest(
             off = stretch / shorter - 1.0
             off = np.where(off > 0.0, LONGER, 1.0) * off**2
             new = cost[1 - side, i] + off + RISE * rise**2
-            new += own[side, j] + DROP_BEHIND * behind[side, j] * (rise < -LEAST_DROP)
+            new += own[side, j] + BEHIND * behind[side, j]
             new[(np.abs(rise) > HIGHEST + 1e-9) | (turn > LARGEST_TURN)] = np.inf
             k = int(new.argmin())
             if new[k] < cost[side, j]:
