@@ -14,6 +14,7 @@ from people import heights, person
 import gaitsmith
 from gaitsmith.errors import GaitsmithWarning, InfeasibleError, InvalidInputError
 from gaitsmith.ground import HeightField, Slope, Stairs
+from gaitsmith.measures.promises import promises
 
 #: A heel that hangs over an edge bears nothing: its footstep cannot be told from heel and ball.
 ON_EDGES = ("footsteps_unseen",)
@@ -248,3 +249,10 @@ def test_a_given_footstep_on_an_edge_is_refused():
     steps = [{"side": s, "x": x, "z": z, "heading_deg": 0.0} for s, x, z in rows]
     with pytest.raises(InfeasibleError, match=r"footstep 3 \(right\) at \(-0.05, 0.95\)"):
         gaitsmith.walk(steps=steps, ground="stairs:0.15,0.3,3")
+
+
+def test_what_is_said_of_steps_upstairs_is_measured_upstairs():
+    motion = gaitsmith.walk(distance=6.0, ground="stairs:0.17,0.29,10")
+    facts = promises(motion, Stairs(0.17, 0.29, 10))
+    assert facts["step_length_m"] == pytest.approx(0.29, abs=0.002)
+    assert facts["speed_mps"] < 0.6

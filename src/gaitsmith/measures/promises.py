@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from gaitsmith.motion.motion import Labels, Motion
 
 
+#: Footsteps that differ more in height, meters, are on uneven ground.
+UNEVEN = 1e-6
+
+
 def promises(motion: Motion, ground: Ground) -> dict[str, float]:
     """The promises that a generated motion can show by itself.
 
@@ -107,8 +111,13 @@ def step_lengths(labels: Labels) -> Float[np.ndarray, "steps"]:
 
 
 def steady_steps(labels: Labels) -> Int[np.ndarray, "k"]:
-    """Indices of the steps that neither start, stop nor fit the end; all if there are none."""
+    """Indices of the steps that neither start, stop nor fit the end; all if there are none.
+
+    Up and down, where the ground sets the steps: all but the first and the last.
+    """
     lengths, times = step_lengths(labels), np.diff(labels.footstep_time[1:])
+    if np.ptp(labels.footstep_position[:, 1]) > UNEVEN and len(lengths) > 2:
+        return np.arange(1, len(lengths) - 1)
     longest = lengths.max()
     full = (lengths > longest * (1.0 - 1e-6)) & (times < times.min() * (1.0 + 1e-6))
     return np.flatnonzero(full) if full.any() else np.flatnonzero(lengths >= 0.5 * longest)
