@@ -121,6 +121,18 @@ def test_nobody_moves_who_is_there_already():
         be_at(draft, BeAt((0.0, 0.0), None, ((-0.1, 0.0, 0.0), (0.1, 0.0, 0.0))))
 
 
+def test_who_stands_in_a_stride_does_not_walk_off_across_the_other_foot():
+    """Along the way the feet would be in one line: the rear one would go through the other."""
+    feet = ((-0.149, -0.053, -2.444), (0.149, 0.053, -2.407))
+    draft = Draft.standing(manners(person(2.05)), Start(feet=feet))
+    be_at(draft, BeAt((-0.52, -0.227), 0.22))
+    for step in draft.planned:
+        if step.kind == "start":
+            stood = {foot.side: foot.position for foot in (step.stance, step.origin)}
+            apart = (stood[LEFT] - stood[RIGHT]) @ leftward(step.stance.direction)
+            assert apart > 0.05, "the feet are on their own sides of the way"
+
+
 # limits -------------------------------------------------------------------------------------------
 
 

@@ -52,6 +52,8 @@ WALKED, STEPPED = 0.5, 2.6
 BEND = 0.75
 #: A foot that lands within this of side by side (m) and turns by more than this turns on the spot.
 BESIDE, TURNS = 0.12, float(np.radians(12.0))
+#: Least distance of the feet across a way that is walked at once, over the step width.
+LEAST_APART = 0.6
 #: Meters between the points of a way that are looked at for what stands there.
 CLEAR_EVERY = 0.02
 #: Widest stance that is a goal, over the leg.
@@ -254,6 +256,11 @@ def _walk(
     if abs(aside) <= TURN_FIRST and aside != 0.0:
         turns -= 1
     if walked + 2.0 * turns * (1.0 + SECOND * LOCAL_SECONDS) > bar:
+        return []
+    # seen along the way the feet must be on their own sides, or one would walk through the other
+    across = np.array([np.cos(path.heading[0]), -np.sin(path.heading[0])])
+    apart = float((begin.place[0] - begin.place[1]) @ across)
+    if abs(aside) <= TURN_FIRST and apart < LEAST_APART * manners.stance.width:
         return []
     steps = count_steps(path, pace, keep_cadence=manners.keeps(tempo))
     cost = steps * (1.0 + SECOND * WALK_SECONDS)
