@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitsmith.errors import InfeasibleError, UnknownFormatError
-from gaitsmith.io import MARKER_READERS, READERS, load_performance
+from gaitsmith.io import READERS, load_performance
 from gaitsmith.io.npz import walkers_in
 from gaitsmith.learning import load_clip
 from gaitsmith.measures.report import measured
@@ -51,7 +51,7 @@ def measure(clip: str | PathLike[str] | Motion, *, unit: str | None = None) -> F
     if isinstance(clip, Motion):
         return measured(clip)
     path = Path(clip)
-    if path.suffix.lower() in MARKER_READERS:  # markers are points, not a pose
+    if path.suffix.lower() not in READERS:  # markers are points, not a pose
         raise UnknownFormatError(path.suffix, READERS, verb="measure")
     motion = load_clip(path, unit)
     assert not isinstance(motion, Markers)

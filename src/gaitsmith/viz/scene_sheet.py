@@ -119,7 +119,8 @@ def _color(index: int) -> Color:
 
 
 def _header(canvas: Canvas, performance: Performance, people: list[Tracks]) -> None:
-    facts = [f"{len(performance)} walkers", f"{performance.duration:.2f} s"]
+    walkers = "1 walker" if len(people) == 1 else f"{len(people)} walkers"
+    facts = [walkers, f"{performance.duration:.2f} s"]
     canvas.text(_MARGIN, 48, "  ·  ".join(facts), size=26, color=palette.INK)
     details = [f"{len(people[0].motion)} frames at {performance.fps:g} fps"]
     details += [
