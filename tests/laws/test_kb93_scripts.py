@@ -137,3 +137,8 @@ def test_hips_that_balance_a_lean_change_over_while_no_walk_starts_or_stops():
     moved = np.linalg.norm(np.diff(motion.root_position, 2, axis=0), axis=1) * 120.0**2
     near = np.array([np.percentile(moved[max(0, i - 60) : i + 61], 75) for i in range(len(moved))])
     assert (moved / np.maximum(near, 3.0)).max() < 3.0
+
+
+def test_the_head_does_not_spin_after_a_point_over_the_feet():
+    motion = walk(do="walk to 0,3; look at 0,1.62,3; stand 1; turn left 180", fps=120)
+    assert not broken(motion)

@@ -416,3 +416,21 @@ print(sorted(loaded & set(sys.modules)))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_who_takes_no_step_stands(run, tmp_path):
+    code, out, err = run("walk", "--do", "stand 1", "-o", tmp_path / "s.npz", "--json")
+    assert (code, err) == (0, "")
+    assert json.loads(out)["step_length_m"] is None
+    assert run("walk", "--do", "look at 1,1,1", "-o", tmp_path / "s.npz")[0] == 0
+    assert run("measure", tmp_path / "s.npz")[0] == 0
+
+
+def test_footsteps_that_nobody_takes_in_time_are_refused(run, tmp_path):
+    rows = ["side,x,z,heading_deg,time", "L,0.1,0,0,0", "R,-0.1,0,0,0"]
+    rows += ["L,0.1,0.4,0,0.05", "R,-0.1,0.8,0,0.9", "L,0.1,0.8,0,1.5"]
+    given = tmp_path / "steps.csv"
+    given.write_text("\n".join(rows))
+    code, _, err = run("walk", "--steps", given, "-o", tmp_path / "s.npz")
+    assert code == 1
+    assert "footstep 3 (left): its step of 0.40 m has 0.05 s" in err

@@ -131,10 +131,12 @@ def report(motion: Motion, files: list[Path], said: list[str], *, as_json: bool)
         return
     for line in said:
         print(f"gaitsmith: warning: {line}", file=sys.stderr)
-    print(
-        f"{facts['steps']} steps over {facts['distance_m']:.2f} m in {facts['duration_s']:.2f} s: "
-        f"{facts['step_length_m']:.3f} m at {facts['cadence_spm']:.1f} steps/min, "
-        f"{facts['speed_mps']:.2f} m/s"
-    )
+    line = f"{facts['steps']} steps over {facts['distance_m']:.2f} m in {facts['duration_s']:.2f} s"
+    if facts["step_length_m"] is not None:
+        line += (
+            f": {facts['step_length_m']:.3f} m at {facts['cadence_spm']:.1f} steps/min, "
+            f"{facts['speed_mps']:.2f} m/s"
+        )
+    print(line)
     for path in files:
         print(f"wrote {path}")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 UNEVEN = 1e-6
 
 
-def promises(motion: Motion, ground: Ground) -> dict[str, float]:
+def promises(motion: Motion, ground: Ground) -> dict[str, float | None]:
     """The promises that a generated motion can show by itself.
 
     Returns
@@ -32,7 +32,7 @@ def promises(motion: Motion, ground: Ground) -> dict[str, float]:
     ``path_error_p95_m`` (signed distance of the mid-hip to the path, averaged over a stride),
     ``goal_error_m`` (middle of the last two footsteps to the end of the path), and the gait's
     own ``distance_m``, ``step_length_m``, ``cadence_spm``, ``speed_mps`` (both of the steady
-    steps) and ``mean_speed_mps`` (of the whole motion).
+    steps; None where there are none) and ``mean_speed_mps`` (of the whole motion).
 
     Raises
     ------
@@ -71,16 +71,20 @@ def _knee(
 
 def _gait(
     motion: Motion, labels: Labels, positions: Float[np.ndarray, "F J 3"]
-) -> dict[str, float]:
+) -> dict[str, float | None]:
     index = motion.skeleton.index
     hips = 0.5 * (positions[:, index("leftUpperLeg")] + positions[:, index("rightUpperLeg")])
     path, way = labels.path, hips[:, [0, 2]]
-    out = {"distance_m": float(np.linalg.norm(way[-1] - way[0]))}
+    distance = float(np.linalg.norm(way[-1] - way[0]))
+    out: dict[str, float | None] = {"distance_m": distance}
     if path is not None:
         out["path_error_p95_m"] = _path_error(way, path, labels, motion.fps)
         last = labels.footstep_position[-2:, [0, 2]].mean(0)
         out["goal_error_m"] = float(np.linalg.norm(last - path[-1]))
+    out["mean_speed_mps"] = distance / max(motion.duration, 1e-9)
     steady = steady_steps(labels)
+    if not len(steady):  # nobody takes a step
+        return out | {"step_length_m": None, "cadence_spm": None, "speed_mps": None}
     gaps = step_lengths(labels)[steady]
     times = np.diff(labels.footstep_time[1:])[steady]
     length, duration = _quantile(gaps, 0.5), _quantile(times, 0.5)
@@ -88,7 +92,6 @@ def _gait(
         "step_length_m": length,
         "cadence_spm": 60.0 / duration,
         "speed_mps": length / duration,
-        "mean_speed_mps": out["distance_m"] / max(motion.duration, 1e-9),
     }
     return out
 
@@ -116,6 +119,8 @@ def steady_steps(labels: Labels) -> Int[np.ndarray, "k"]:
     Up and down, where the ground sets the steps: all but the first and the last.
     """
     lengths, times = step_lengths(labels), np.diff(labels.footstep_time[1:])
+    if not len(lengths):
+        return np.zeros(0, dtype=np.int64)
     if np.ptp(labels.footstep_position[:, 1]) > UNEVEN and len(lengths) > 2:
         return np.arange(1, len(lengths) - 1)
     longest = lengths.max()

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith._checks import frozen_array
-from gaitsmith.conventions import SIDE_SIGN, SIDES, ahead, leftward
+from gaitsmith.conventions import GRAVITY, SIDE_SIGN, SIDES, ahead, leftward
 from gaitsmith.errors import InfeasibleError, InvalidInputError
 from gaitsmith.geometry.planar import feet_apart
 from gaitsmith.ground import foot_plane
 from gaitsmith.plan.course import course_curvature, course_pieces
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.lengths import EASED_DURATION, MOST_STEPS
+from gaitsmith.plan.pace import LARGEST_FROUDE
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
@@ -35,6 +36,8 @@ LARGEST_ASIDE = float(np.radians(60.0))
 TOUCHING, CROSSED, WIDEST = 0.045, 0.03, 0.6
 #: A step takes its usual time times the square root of usual over own length, within these.
 QUICKEST, SLOWEST = 0.75, 1.6
+#: Seconds of the quickest step, of a body whose leg is LEG meters.
+SHORTEST_TIME, LEG = 0.2, 0.834
 #: Time that a turning step takes longer, per radian.
 TURN_TIME = 0.35
 
@@ -129,7 +132,24 @@ def plan_given(given: GivenSteps, *, body: Body, pace: Pace, ground: Ground) -> 
         kinds=tuple(kinds),
     )
     _check_course(plan)
+    if given.time is not None:
+        _check_times(plan, body)
     return plan
+
+
+def _check_times(plan: StepPlan, body: Body) -> None:
+    """Refuse steps that nobody walks in the time they are given."""
+    shortest = SHORTEST_TIME * np.sqrt(body.leg_length / LEG)
+    fastest = np.sqrt(LARGEST_FROUDE * GRAVITY * body.hip_height)
+    least = np.maximum(shortest, np.abs(plan.step_lengths[1:]) / fastest)
+    quick = np.flatnonzero(plan.durations < least * (1.0 - 1e-9))
+    if quick.size:
+        i = int(quick[0])
+        raise InfeasibleError(
+            f"footstep {i + 3} ({SIDES[plan.side[i + 2]]}): its step of "
+            f"{plan.step_lengths[i + 1]:.2f} m has {plan.durations[i]:.2f} s, this body needs at "
+            f"least {least[i]:.2f} s; let it land later"
+        )
 
 
 def _check_course(plan: StepPlan) -> None:

@@ -30,6 +30,9 @@ LOOK_SECONDS = 0.55
 #: A point is followed up to EASY aside; beyond, the head turns less, and not at all to what is
 #: right behind. Up and down as far as STEEP, radians.
 EASY, STEEP = float(np.radians(60.0)), float(np.radians(55.0))
+#: A point nearer than this, seen from above (m), has less and less of a direction: the head does
+#: not follow it round.
+NEAR = 0.4
 #: Shares of a turn of the gaze that spine and neck take; the head has the rest.
 SPINE, NECK = 1.0 / 3.0, 1.0 / 3.0
 #: Part of a lean that neck and head, and that hanging arms take back.
@@ -100,8 +103,9 @@ class Attention:
                 yaw, pitch = ahead_yaw, pitch0
             else:
                 way = np.array(point) - eyes
-                yaw = _easy(_wrapped(np.arctan2(way[:, 0], way[:, 2]) - heading))
                 flat = np.maximum(np.hypot(way[:, 0], way[:, 2]), 1e-6)
+                aside = _easy(_wrapped(np.arctan2(way[:, 0], way[:, 2]) - heading))
+                yaw = ahead_yaw + smoothstep(flat / NEAR) * (aside - ahead_yaw)
                 pitch = STEEP * np.tanh(np.arctan2(way[:, 1], flat) / STEEP)
             wanted_yaw = wanted_yaw + share * (yaw - wanted_yaw)
             wanted_pitch = wanted_pitch + share * (pitch - wanted_pitch)
