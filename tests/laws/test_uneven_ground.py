@@ -256,3 +256,11 @@ def test_what_is_said_of_steps_upstairs_is_measured_upstairs():
     facts = promises(motion, Stairs(0.17, 0.29, 10))
     assert facts["step_length_m"] == pytest.approx(0.29, abs=0.002)
     assert facts["speed_mps"] < 0.6
+
+
+def test_a_script_starts_on_a_slope_without_a_jolt():
+    """Feet that stand nearly side by side stand on one place, as the hips feel it."""
+    motion = gaitsmith.walk(
+        do="follow 0,3 1,5; walk to 3,6", ground="slope:-15", fps=120
+    ).root_position
+    assert np.abs(np.diff(motion[:240, 1], 2)).max() * 120.0**2 < 10.0  # m/s2; 44 before

@@ -158,12 +158,13 @@ def _lie(
     level = position[:, 1] + ((place - position[:, [0, 2]]) * own).sum(-1)
     way = ahead(np.array([f.direction for f in feet]))[:, [0, 2]]
     slope = (own * way).sum(-1)
-    # feet side by side: one level, between them
+    # feet side by side: one place and one level, between them
     for step in steps:
         pair = {"start": (step.origin, step.stance), "stop": (step.stance, step.target)}
         for kind, two in pair.items():
             if step.kind == kind:
                 both = [number[id(f)] for f in two]
+                place[both] = place[both].mean(axis=0)
                 level[both], slope[both] = level[both].mean(), slope[both].mean()
     for step in steps:
         if step.kind in LOCAL_KINDS:
