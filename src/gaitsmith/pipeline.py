@@ -30,10 +30,10 @@ from gaitsmith.plan.script import Script, Tempo
 from gaitsmith.plan.start import Start, start_of, start_to_dict
 from gaitsmith.plan.surroundings import Surroundings
 from gaitsmith.plan.where import read_where
+from gaitsmith.synthesis.generators import generator_for
 from gaitsmith.synthesis.habits import own_pace, stance_of, with_habits
 from gaitsmith.synthesis.sample import sample_walk
 from gaitsmith.synthesis.step import prepare_walk
-from gaitsmith.synthesis.straight import StraightGenerator
 from gaitsmith.synthesis.unusual import warn_of_short_steps, warn_of_treads, warn_of_unusual
 from gaitsmith.synthesis.upper_body import Manner
 from gaitsmith.walks.generalize import check_step_length
@@ -49,8 +49,8 @@ if TYPE_CHECKING:
     from gaitsmith.plan.script import Action
     from gaitsmith.plan.timeline import Timeline
     from gaitsmith.plan.where import PathLike, StepsLike
-    from gaitsmith.synthesis.gaits import Gait, Habits
-    from gaitsmith.synthesis.step import PreparedWalk, StepGenerator
+    from gaitsmith.synthesis.gaits import Habits
+    from gaitsmith.synthesis.step import PreparedWalk
     from gaitsmith.walks.learned import LearnedGait
 
 #: Seconds of standing after a stop.
@@ -269,7 +269,7 @@ def walk(
 
     def planned(routes: Routes | None = None) -> StepPlan | Timeline:
         if isinstance(where, Script):
-            from gaitsmith.plan.director import Manners, direct  # late, as in _generator
+            from gaitsmith.plan.director import Manners, direct  # late, as in generator_for
 
             full = step_length is not None
             manners = Manners(who, pace, stance, ground, rhythm, outside, keep, full, paced)
@@ -304,7 +304,7 @@ def walk(
     gaits_of = {name: other for name, (other, _) in others.items()}
 
     def prepared(plan: StepPlan | Timeline) -> PreparedWalk:
-        generator = _generator(plan, style, ground, banking, ahead=ahead, gaits=gaits_of)
+        generator = generator_for(plan, style, ground, banking, ahead=ahead, gaits=gaits_of)
         return prepare_walk(plan, generator, who, ground, rest=REST)
 
     if around.empty:
@@ -393,43 +393,6 @@ def _plan(
     if isinstance(where, GivenSteps):
         return plan_given(where, body=body, pace=pace, ground=ground)
     return where
-
-
-def _generator(
-    plan: StepPlan | Timeline,
-    style: Gait,
-    ground: Ground,
-    banking: str,
-    *,
-    ahead: bool,
-    gaits: Mapping[str, Gait],
-) -> StepGenerator:
-    """What walks ``plan``; ``ahead``: it leads straight ahead with even widths.
-
-    ``gaits`` are those that actions name.
-
-    Imports are late: who walks straight ahead waits for nothing that bends or mixes walks.
-    """
-    if not isinstance(ground, Flat):
-        from gaitsmith.synthesis.uneven import UnevenGenerator
-
-        level = _generator(plan, style, Flat(), banking, ahead=ahead, gaits=gaits)
-        return UnevenGenerator(level, ground)
-    if ahead:
-        return StraightGenerator(style.walk, ground, style.overlay)
-    from gaitsmith.synthesis.curved import CurvedGenerator
-
-    walking = CurvedGenerator(style.walk, ground, style.overlay, banking=banking)
-    if isinstance(plan, StepPlan):
-        return walking
-    from gaitsmith.synthesis.mixed import MixedGenerator
-    from gaitsmith.synthesis.stepping import LocalGenerator
-
-    others = {
-        name: CurvedGenerator(gait.walk, ground, gait.overlay, banking=banking)
-        for name, gait in gaits.items()
-    }
-    return MixedGenerator(walking, LocalGenerator(style.walk, ground, style.overlay), others)
 
 
 def regenerate(recipe: Motion | str | dict[str, Any]) -> Motion:
