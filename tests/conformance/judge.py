@@ -119,7 +119,7 @@ def judge(motion):
     positions, world, soles = posed(motion)
     above, down = over(motion, soles), motion.contacts
     return {
-        **_feet(soles, above, down),
+        **_feet(soles, above, down, json.loads(motion.labels.ground)["kind"] in ("flat", "slope")),
         **_legs(motion, positions, world, down),
         **_smoothness(motion),
         **_footsteps(motion, positions, soles),
@@ -140,7 +140,7 @@ def broken(motion, *, but=()):
     }
 
 
-def _feet(soles, read, down):
+def _feet(soles, read, down, plane):
     above = read.max(0)
     slip = 0.0
     for side in range(2):
@@ -152,7 +152,7 @@ def _feet(soles, read, down):
     touches = np.abs(above) < 1e-10
     bears = still[1:] & still[:-1] & touches[1:-1]  # since the frame before, until the next
     # toes that reach over an edge bear nothing
-    flat = down[..., HEEL] & down[..., BALL] & (above[..., TOE] < 0.01)
+    flat = down[..., HEEL] & down[..., BALL] & (plane | (above[..., TOE] < 0.01))
     return {
         "slip_mm": 1e3 * slip,
         "penetration_mm": 1e3 * max(0.0, -above.min()),

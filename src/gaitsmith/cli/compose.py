@@ -21,7 +21,7 @@ def compose(
     """Mix walks into a new one: gaits, clips and weights as RECIPE says."""
     from gaitsmith import composing  # imported late: --help must cost nothing
     from gaitsmith.cli.learn import facts_of, report
-    from gaitsmith.cli.walk import collected_warnings
+    from gaitsmith.cli.reporting import collected_warnings
     from gaitsmith.errors import UnknownFormatError
     from gaitsmith.io import place
     from gaitsmith.walks.learned import SUFFIX, write_gait
