@@ -56,6 +56,7 @@ class StepRequest:
     kind: StepKind = "walk"
     previous_duration: float | None = None
     stride: int = 0
+    climbs: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,3 +141,14 @@ class StraightWalk(Protocol):
     def step(self, body: Body, request: StepRequest) -> SagittalStep:
         """Compute one step; raise InfeasibleStepError if ``body`` cannot take it."""
         ...
+
+
+@runtime_checkable
+class ClimbingWalk(StraightWalk, Protocol):
+    """A straight walk that steps otherwise up and down hill.
+
+    It still answers as on the level: heights count from the line through the footsteps, soles
+    from the ground.
+    """
+
+    climbs: bool
