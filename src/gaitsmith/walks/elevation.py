@@ -64,6 +64,9 @@ class ElevationSet:
         paper's four angles do not say; None: they lie until they leave.
     toe_off
         Phase of the stride at which the toes leave, after 1/2.
+    above
+        ``(K,)`` how far the person's own hips run above those that legs on such feet can reach,
+        over leg length: the product raises the heel there; None: nowhere.
     """
 
     angles: Float[np.ndarray, "K 4"]
@@ -76,12 +79,16 @@ class ElevationSet:
     constructed: str = ""
     meta: Float[np.ndarray, "K"] | None = None
     toe_off: float = 0.62
+    above: Float[np.ndarray, "K"] | None = None
 
     def __post_init__(self) -> None:
         """Copy, check and freeze."""
         object.__setattr__(self, "angles", frozen_array("angles", self.angles, (None, 4)))
-        meta = np.zeros(len(self.angles)) if self.meta is None else self.meta
-        object.__setattr__(self, "meta", frozen_array("meta", meta, (len(self.angles),)))
+        none = np.zeros(len(self.angles))
+        for name in ("meta", "above"):
+            own = getattr(self, name)
+            own = frozen_array(name, none if own is None else own, (len(none),))
+            object.__setattr__(self, name, own)
         if not 0.5 < number("toe_off", self.toe_off, "1") < 1.0:
             raise InvalidInputError(f"toe_off must be between 1/2 and 1, got {self.toe_off:g}")
         if len(self.angles) < 8 or len(self.angles) % 2:
@@ -166,6 +173,7 @@ def mixed(sets: Sequence[ElevationSet], weights: Float[np.ndarray, "n"]) -> Elev
         constructed="mixed",
         meta=np.maximum(weights @ np.stack([s.meta for s in sets]), 0.0),
         toe_off=mean([s.toe_off for s in sets]),
+        above=weights @ np.stack([s.above for s in sets]),
     )
 
 

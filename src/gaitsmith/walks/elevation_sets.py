@@ -242,8 +242,8 @@ def _as_set(
     """The four angles of a stride; ``slope`` in degrees."""
     rho, body = float(np.radians(slope)), legs.body
     pelvis = _pelvis(legs, stride.length)
-    stride = _lowered(stride, body, pelvis)
-    thigh, knee, _ = _legs(_hips(stride.middle, body, pelvis), stride.ankle, body)
+    lowered = _lowered(stride, body, pelvis)
+    thigh, knee, _ = _legs(_hips(lowered.middle, body, pelvis), stride.ankle, body)
     foot = 0.5 * np.pi + rho + stride.pitch
     walked = stride.length / legs.length
     return ElevationSet(
@@ -257,6 +257,7 @@ def _as_set(
         constructed=constructed,
         meta=stride.meta,
         toe_off=stride.toe_off,
+        above=(stride.middle - lowered.middle)[:, 1] / body.leg_length,
     )
 
 

@@ -148,17 +148,20 @@ class _Figure:
     ) -> None:
         alike = both[0] is both[1]
         self.interp = ElevInterp(both[0], body, None if alike else both[1])
-        self.planar = self.interp.figure
+        self.planar, self.foot = self.interp.figure, body.foot
         self.phase = phase
         own = self.interp.sets
         other = own if alike else tuple(s.for_body(body) for s in both[1])
         #: ``(T, S, 4)`` elevations of stance and swing leg; ``(T, S)`` meta of both.
         self.stance = np.stack([s.at(0.5 * phase) for s in own], axis=1)
         self.swing = np.stack([s.at(0.5 + 0.5 * phase) for s in other], axis=1)
+        early, late = 0.5 * phase, 0.5 + 0.5 * phase
         self.meta = (
-            np.stack([_periodic(s.meta, 0.5 * phase) for s in own], axis=1),
-            np.stack([_periodic(s.meta, 0.5 + 0.5 * phase) for s in other], axis=1),
+            np.stack([_periodic(s.meta, early) for s in own], axis=1),
+            np.stack([_periodic(s.meta, late) for s in other], axis=1),
         )
+        #: ``(T, S)`` meters that the hips run above what the angles say.
+        self.above = body.leg_length * np.stack([_periodic(s.above, early) for s in own], axis=1)
         self.slope = np.array([s.slope for s in own])
         self._known: dict[tuple[float, float], tuple[np.ndarray, np.ndarray, bool]] = {}
 
@@ -205,7 +208,7 @@ class _Drawn:
 
         ``after`` has the other foot's stance: the step before was its.
         """
-        phase, planar = figure.phase, figure.planar
+        phase, planar, foot = figure.phase, figure.planar, figure.foot
         before, taken = after.taken(np.array(asked[:1])), figure.taken(np.array(asked[1:]))
         share = _minimum_jerk(phase / SETTLED)
         # sets of the step before stand in the same order for both sides
@@ -218,29 +221,35 @@ class _Drawn:
         pitch[:, 0] = _rolled(pitch[:, 0])
         rear = phase <= toe_off
         pitch[rear, 1] = np.minimum(pitch[rear, 1], 0.0)
+        meta = np.maximum(metas, 0.0)
+        meta[:, 1] = np.where(rear, meta[:, 1], 0.0)
+        meta = np.where(pitch < 0.0, np.minimum(meta, -pitch), 0.0)
         # up the leg that stands to the hips, down the other to its ankle
         ankle = turned(planar.sole.stand(pitch[:, 0]), data_slope)
         hip = ankle - planar.shin * _down(own[:, SHANK]) - planar.thigh * _down(own[:, THIGH])
         shift = planar.pelvis * (np.tan(other[:, PELVIS]) - np.tan(own[:, PELVIS]))
         half = 0.5 * np.stack([shift, np.zeros(len(phase))], axis=-1)
-        center = hip + half
+        (previous, fell), (length, rise) = asked
         # what the mixes miss is shared by the two legs that predict the hips at heel strike
         start, end = -0.5 * before.missed[0], 0.5 * taken.missed[0]
         soft = smoothstep(phase)
-        center[:, 0] += start[0] + phase * (end[0] - start[0])
-        center[:, 1] += start[1] + soft * (end[1] - start[1])
-        swing = center + half
+        center = hip + half + start + soft[:, None] * (end - start)
+        # the rear leg knows how the hips came here: it hands over while both legs bear
+        ankle = turned(rolled_ankle(foot, pitch[:, 1], meta[:, 1]), data_slope)
+        ankle = ankle - [previous, fell]
+        behind = ankle - planar.shin * _down(other[:, SHANK]) - planar.thigh * _down(other[:, THIGH])
+        behind = behind - half - start
+        hands = smoothstep(np.minimum(phase / toe_off, 1.0))[:, None]
+        center = behind + hands * (center - behind)
+        center[:, 1] += (weights * figure.above).sum(axis=1)
+        swing = hip + 2.0 * half
         swing = swing + planar.thigh * _down(other[:, THIGH]) + planar.shin * _down(other[:, SHANK])
         # heights from the line: of the step before at first, of this one at last
         grades = [rise / length if length > 0.0 else 0.0 for length, rise in asked]
         grade = grades[0] + soft * (grades[1] - grades[0])
         center[:, 1] -= grade * center[:, 0]
-        (previous, fell), (length, rise) = asked
         over = (rise + fell) / (length + previous)
         swing[:, 1] -= over * (swing[:, 0] + previous) - fell
-        meta = np.maximum(metas, 0.0)
-        meta[:, 1] = np.where(rear, meta[:, 1], 0.0)
-        meta = np.where(pitch < 0.0, np.minimum(meta, -pitch), 0.0)
         return _Drawn(phase, toe_off, center, swing, pitch, meta, previous, length)
 
     @property
