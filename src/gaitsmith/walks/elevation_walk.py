@@ -235,8 +235,11 @@ class _Drawn:
         soft = smoothstep(phase)
         center = hip + half + start + soft[:, None] * (end - start)
         # the rear leg knows how the hips came here: it hands over while both legs bear
-        ankle = turned(rolled_ankle(foot, pitch[:, 1], meta[:, 1]), data_slope)
-        ankle = ankle - [previous, fell]
+        ankle = rolled_ankle(foot, pitch[:, 1], meta[:, 1])
+        # the data's toes lie until the other heel strikes, as the paper's
+        lies = planar.sole.stand(pitch[:1, 1]) - ankle[:1]
+        ankle += (1.0 - smoothstep(np.minimum(phase / LEFT_BEHIND, 1.0)))[:, None] * lies
+        ankle = turned(ankle, data_slope) - [previous, fell]
         behind = ankle - planar.shin * _down(other[:, SHANK]) - planar.thigh * _down(other[:, THIGH])
         behind = behind - half - start
         hands = smoothstep(np.minimum(phase / toe_off, 1.0))[:, None]
