@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -61,12 +61,12 @@ class ElevationSet:
         What was done instead of measuring; empty for measured data.
     meta
         ``(K,)`` radians of the toes against the ground as they turn about their tip, which the
-        paper's four angles do not say; None: they lie until they leave.
+        paper's four angles do not say; empty: they lie until they leave.
     toe_off
         Phase of the stride at which the toes leave, after 1/2.
     above
         ``(K,)`` how far the person's own hips run above those that legs on such feet can reach,
-        over leg length: the product raises the heel there; None: nowhere.
+        over leg length: the product raises the heel there; empty: nowhere.
     """
 
     angles: Float[np.ndarray, "K 4"]
@@ -77,9 +77,9 @@ class ElevationSet:
     name: str = ""
     source: str = ""
     constructed: str = ""
-    meta: Float[np.ndarray, "K"] | None = None
+    meta: Float[np.ndarray, "K"] = field(default_factory=lambda: np.zeros(0))
     toe_off: float = 0.62
-    above: Float[np.ndarray, "K"] | None = None
+    above: Float[np.ndarray, "K"] = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         """Copy, check and freeze."""
@@ -87,7 +87,7 @@ class ElevationSet:
         none = np.zeros(len(self.angles))
         for name in ("meta", "above"):
             own = getattr(self, name)
-            own = frozen_array(name, none if own is None else own, (len(none),))
+            own = frozen_array(name, own if len(own) else none, (len(none),))
             object.__setattr__(self, name, own)
         if not 0.5 < number("toe_off", self.toe_off, "1") < 1.0:
             raise InvalidInputError(f"toe_off must be between 1/2 and 1, got {self.toe_off:g}")

@@ -167,9 +167,7 @@ def _planted(legs: Legs, length: float, side: int = LEFT) -> _Stride:
     ahead = np.array([length, 0.0])
     middle = np.concatenate([read(own, own.center), ahead + read(other, other.center)])
     swing = ahead + read(other, other.ankle[:, 1])
-    stride = _Stride(
-        length, pitch, np.tile(swing, (2, 1)), middle, meta, 0.5 + 0.5 * other.toe_off
-    )
+    stride = _Stride(length, pitch, np.tile(swing, (2, 1)), middle, meta, 0.5 + 0.5 * other.toe_off)
     return _on_round_heel(legs.body, stride, 0.0)
 
 

@@ -108,8 +108,9 @@ class ElevationWalk:
         return self._of(body)[side].taken(np.asarray(steps, dtype=np.float64))
 
     def _figures(self, body: Body) -> tuple[_Figure, _Figure]:
-        left = _Figure(self._sets, body, self._phase)
-        return left, left if self._alike else _Figure(self._sets[::-1], body, self._phase)
+        own, other = self._sets
+        left = _Figure(own, own if self._alike else other, body, self._phase)
+        return left, left if self._alike else _Figure(other, own, body, self._phase)
 
     def _step(self, body: Body, request: StepRequest) -> SagittalStep:
         for length in (request.previous_length, request.length):
@@ -142,16 +143,17 @@ class _Figure:
 
     def __init__(
         self,
-        both: tuple[Sequence[ElevationSet], Sequence[ElevationSet]],
+        stance: Sequence[ElevationSet],
+        swing: Sequence[ElevationSet],
         body: Body,
         phase: Float[np.ndarray, "T"],
     ) -> None:
-        alike = both[0] is both[1]
-        self.interp = ElevInterp(both[0], body, None if alike else both[1])
+        alike = stance is swing
+        self.interp = ElevInterp(stance, body, None if alike else swing)
         self.planar, self.foot = self.interp.figure, body.foot
         self.phase = phase
         own = self.interp.sets
-        other = own if alike else tuple(s.for_body(body) for s in both[1])
+        other = own if alike else tuple(s.for_body(body) for s in swing)
         #: ``(T, S, 4)`` elevations of stance and swing leg; ``(T, S)`` meta of both.
         self.stance = np.stack([s.at(0.5 * phase) for s in own], axis=1)
         self.swing = np.stack([s.at(0.5 + 0.5 * phase) for s in other], axis=1)
@@ -234,19 +236,18 @@ class _Drawn:
         start, end = -0.5 * before.missed[0], 0.5 * taken.missed[0]
         soft = smoothstep(phase)
         center = hip + half + start + soft[:, None] * (end - start)
+        leg = planar.shin * _down(other[:, SHANK]) + planar.thigh * _down(other[:, THIGH])
+        swing = center + half + leg
         # the rear leg knows how the hips came here: it hands over while both legs bear
         ankle = rolled_ankle(foot, pitch[:, 1], meta[:, 1])
         # the data's toes lie until the other heel strikes, as the paper's
         lies = planar.sole.stand(pitch[:1, 1]) - ankle[:1]
         ankle += (1.0 - smoothstep(np.minimum(phase / LEFT_BEHIND, 1.0)))[:, None] * lies
         ankle = turned(ankle, data_slope) - [previous, fell]
-        behind = ankle - planar.shin * _down(other[:, SHANK]) - planar.thigh * _down(other[:, THIGH])
-        behind = behind - half - start
+        behind = ankle - leg - half - start
         hands = smoothstep(np.minimum(phase / toe_off, 1.0))[:, None]
         center = behind + hands * (center - behind)
         center[:, 1] += (weights * figure.above).sum(axis=1)
-        swing = hip + 2.0 * half
-        swing = swing + planar.thigh * _down(other[:, THIGH]) + planar.shin * _down(other[:, SHANK])
         # heights from the line: of the step before at first, of this one at last
         grades = [rise / length if length > 0.0 else 0.0 for length, rise in asked]
         grade = grades[0] + soft * (grades[1] - grades[0])
