@@ -117,8 +117,12 @@ class CurvedGenerator:
         curved = [i for i, same in enumerate(straight) if not same]
         read: dict[int, Answer | None] = {}
         climbing = any(requests[i].rise or any(requests[i].climbs) for i in curved)
-        if tabled and curved and not climbing:
-            table = self._asker.table(body, [requests[i] for i in curved], anchor)
+        if tabled and curved:
+            asked = [requests[i] for i in curved]
+            if climbing:  # no two steps are alike: all are asked for, at once
+                table = self._asker.answers(body, asked)
+            else:
+                table = self._asker.table(body, asked, anchor)
             read = dict(zip(curved, table, strict=True))
         out: dict[int, PreparedStep] = {}
         answers: list[Answer] = []

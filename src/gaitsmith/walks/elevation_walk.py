@@ -103,6 +103,13 @@ class ElevationWalk:
         """See :meth:`gaitsmith.walks.model.StraightWalk.step`."""
         return self._cached(body, request)
 
+    def foresee(self, body: Body, requests: Sequence[StepRequest]) -> None:
+        """See :meth:`gaitsmith.walks.model.ClimbingWalk.foresee`."""
+        for side, figure in enumerate(self._of(body)):
+            steps = [_ends(r)[r.side != side] for r in requests]
+            if steps:
+                figure.taken(np.array(steps))
+
     def taken(self, body: Body, steps: Float[np.ndarray, "n 2"], side: int = LEFT) -> Taken:
         """How steps (length, height) in meters on the stance foot ``side`` are taken."""
         return self._of(body)[side].taken(np.asarray(steps, dtype=np.float64))
@@ -115,18 +122,7 @@ class ElevationWalk:
     def _step(self, body: Body, request: StepRequest) -> SagittalStep:
         for length in (request.previous_length, request.length):
             check_step_length(body, length)
-        figure = self._of(body)[request.side]
-        if request.kind == "start":
-            share, length = START_SHARE, request.length
-            asked = [(share * length, share * request.climbs[1]), (length, request.climbs[1])]
-        elif request.kind == "stop":
-            share, length = STOP_SHARE, request.previous_length
-            asked = [(length, request.climbs[0]), (share * length, share * request.climbs[0])]
-        else:
-            asked = [
-                (request.previous_length, request.climbs[0]),
-                (request.length, request.climbs[1]),
-            ]
+        figure, asked = self._of(body)[request.side], _ends(request)
         drawn = _Drawn.of(figure, self._of(body)[1 - request.side], self._toe_off, asked)
         if request.kind == "start":
             drawn.from_standing(body)
@@ -136,6 +132,20 @@ class ElevationWalk:
             miss = request.hip_height - drawn.center[0, 1]
             drawn.center[:, 1] += miss * (1.0 - smoothstep(self._phase / self._toe_off))
         return drawn.step(body)
+
+
+def _ends(request: StepRequest) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Steps (length, rise) in meters that the data take: the one before this one, and this one.
+
+    A start leaves as after a short step, a stop lands as after one.
+    """
+    length, climb = request.length, request.climbs[1]
+    before, fell = request.previous_length, request.climbs[0]
+    if request.kind == "start":
+        before, fell = START_SHARE * length, START_SHARE * climb
+    if request.kind == "stop":
+        length, climb = STOP_SHARE * before, STOP_SHARE * fell
+    return (before, fell), (length, climb)
 
 
 class _Figure:
@@ -176,10 +186,11 @@ class _Figure:
                 self._known.clear()
                 new = list(dict.fromkeys(keys))
             wanted = np.array(new)
-            for key, row in zip(new, wanted, strict=True):  # alone: nobody's company changes it
-                found = self.interp.find(row[None])
-                missed = row - found.achieved[0]
-                self._known[key] = (found.weights[0], missed, bool(found.outside[0]))
+            found = self.interp.find(wanted)
+            # rounded: in other company sums end otherwise in their last bits
+            weights, missed = np.round(found.weights, 11), np.round(wanted - found.achieved, 11)
+            rows = zip(weights, missed, found.outside.tolist(), strict=True)
+            self._known |= dict(zip(new, rows, strict=True))
         rows = [self._known[k] for k in keys]
         weights, missed, outside = zip(*rows, strict=True)
         return Taken(np.array(weights), np.array(missed), np.array(outside))

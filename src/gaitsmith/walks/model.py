@@ -11,6 +11,8 @@ from gaitsmith._checks import frozen_array
 from gaitsmith.errors import InvalidInputError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
@@ -152,3 +154,7 @@ class ClimbingWalk(StraightWalk, Protocol):
     """
 
     climbs: bool
+
+    def foresee(self, body: Body, requests: Sequence[StepRequest]) -> None:
+        """All ``requests`` are about to be asked: what they share may be found at once."""
+        ...
