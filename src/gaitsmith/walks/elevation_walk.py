@@ -93,9 +93,6 @@ class ElevationWalk:
             raise InvalidInputError("both legs need equally many sets")
         self._sets = both
         self._alike = others is None
-        toe_off = {round(2.0 * s.toe_off - 1.0, 12) for side in both for s in side}
-        self._toe_off = sum(toe_off) / len(toe_off)
-        self._phase = phase_grid(self._toe_off)
         self._of: Callable[[Body], tuple[_Figure, _Figure]] = lru_cache(16)(self._figures)
         self._cached: Callable[[Body, StepRequest], SagittalStep] = lru_cache(1024)(self._step)
 
@@ -116,21 +113,21 @@ class ElevationWalk:
 
     def _figures(self, body: Body) -> tuple[_Figure, _Figure]:
         own, other = self._sets
-        left = _Figure(own, own if self._alike else other, body, self._phase)
-        return left, left if self._alike else _Figure(other, own, body, self._phase)
+        left = _Figure(own, own if self._alike else other, body)
+        return left, left if self._alike else _Figure(other, own, body)
 
     def _step(self, body: Body, request: StepRequest) -> SagittalStep:
         for length in (request.previous_length, request.length):
             check_step_length(body, length)
         figure, asked = self._of(body)[request.side], _ends(request)
-        drawn = _Drawn.of(figure, self._of(body)[1 - request.side], self._toe_off, asked)
+        drawn = _Drawn.of(figure, self._of(body)[1 - request.side], asked)
         if request.kind == "start":
             drawn.from_standing(body)
         if request.kind == "stop":
             drawn.to_standing(body)
         if request.hip_height is not None:
             miss = request.hip_height - drawn.center[0, 1]
-            drawn.center[:, 1] += miss * (1.0 - smoothstep(self._phase / self._toe_off))
+            drawn.center[:, 1] += miss * (1.0 - smoothstep(drawn.phase / drawn.toe_off))
         return drawn.step(body)
 
 
@@ -156,21 +153,26 @@ class _Figure:
         stance: Sequence[ElevationSet],
         swing: Sequence[ElevationSet],
         body: Body,
-        phase: Float[np.ndarray, "T"],
     ) -> None:
         alike = stance is swing
         self.interp = ElevInterp(stance, body, None if alike else swing)
         self.planar, self.foot = self.interp.figure, body.foot
-        self.phase = phase
         own = self.interp.sets
         other = own if alike else tuple(s.for_body(body) for s in swing)
+        #: The swing foot leaves at one phase whatever the mix: sets are warped to that.
+        leaves = np.array([2.0 * s.toe_off - 1.0 for s in other])
+        self.toe_off = round(float(leaves.mean()), 12)
+        self.phase = phase = phase_grid(self.toe_off)
+        late = [
+            0.5 + 0.5 * np.interp(phase, [0.0, self.toe_off, 1.0], [0.0, a, 1.0]) for a in leaves
+        ]
         #: ``(T, S, 4)`` elevations of stance and swing leg; ``(T, S)`` meta of both.
         self.stance = np.stack([s.at(0.5 * phase) for s in own], axis=1)
-        self.swing = np.stack([s.at(0.5 + 0.5 * phase) for s in other], axis=1)
-        early, late = 0.5 * phase, 0.5 + 0.5 * phase
+        self.swing = np.stack([s.at(t) for s, t in zip(other, late, strict=True)], axis=1)
+        early = 0.5 * phase
         self.meta = (
             np.stack([_periodic(s.meta, early) for s in own], axis=1),
-            np.stack([_periodic(s.meta, late) for s in other], axis=1),
+            np.stack([_periodic(s.meta, t) for s, t in zip(other, late, strict=True)], axis=1),
         )
         #: ``(T, S)`` meters that the hips run above what the angles say.
         self.above = body.leg_length * np.stack([_periodic(s.above, early) for s in own], axis=1)
@@ -214,14 +216,12 @@ class _Drawn:
     length: float
 
     @staticmethod
-    def of(
-        figure: _Figure, after: _Figure, toe_off: float, asked: Sequence[tuple[float, float]]
-    ) -> _Drawn:
+    def of(figure: _Figure, after: _Figure, asked: Sequence[tuple[float, float]]) -> _Drawn:
         """The step that follows one of ``asked[0]`` and takes ``asked[1]``, (length, rise).
 
         ``after`` has the other foot's stance: the step before was its.
         """
-        phase, planar, foot = figure.phase, figure.planar, figure.foot
+        phase, planar, foot, toe_off = figure.phase, figure.planar, figure.foot, figure.toe_off
         before, taken = after.taken(np.array(asked[:1])), figure.taken(np.array(asked[1:]))
         share = _minimum_jerk(phase / SETTLED)
         # sets of the step before stand in the same order for both sides
