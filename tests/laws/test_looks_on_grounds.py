@@ -1,0 +1,107 @@
+"""What people look like on slopes and stairs: knees, heels and ankles; how long they step."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from judge import broken, posed
+from people import person
+
+import gaitsmith
+from gaitsmith.ground import Slope, Stairs
+
+SIDES = ("left", "right")
+FPS = 120
+
+
+@cache
+def walked(ground, gait="neutral", body=1.75, **asked):
+    distance = 3.0 + asked.pop("more", 0.0)
+    return gaitsmith.walk(distance=distance, ground=ground, gait=gait, body=body, fps=FPS, **asked)
+
+
+def legs(motion):
+    """Knee flexion and ankle dorsiflexion (F, 2), pitch of the soles in space, degrees."""
+    positions, _, soles = posed(motion)[:3]
+
+    def joint(name):
+        places = [positions[:, motion.skeleton.index(side + name)] for side in SIDES]
+        return np.stack(places, axis=1)
+
+    def elevation(bone):
+        return np.degrees(np.arctan2(bone[..., 2], -bone[..., 1]))
+
+    thigh, shin = joint("LowerLeg") - joint("UpperLeg"), joint("Foot") - joint("LowerLeg")
+    sole = soles[:, :, 1] - soles[:, :, 0]
+    pitch = np.degrees(np.arcsin(sole[..., 1] / np.linalg.norm(sole, axis=-1)))
+    return elevation(thigh) - elevation(shin), pitch - elevation(shin), pitch
+
+
+def landings(motion, which):
+    """(frame, side) of some footsteps."""
+    frame = np.ceil(motion.labels.footstep_time * FPS - 1e-6).astype(int)
+    return [(frame[i], int(motion.labels.footstep_side[i])) for i in which]
+
+
+def front_knee(motion):
+    """Flexion of the knee in front as steady steps land, degrees."""
+    knee = legs(motion)[0]
+    return float(np.mean([knee[frame, side] for frame, side in landings(motion, (3, 4))]))
+
+
+# ------------------------------------------------------------------------------- uphill
+
+
+@pytest.mark.parametrize("gait", ["neutral", "winter", "proud", "sad", "hurried", "swagger"])
+def test_the_knee_in_front_does_not_fold_uphill(gait):
+    """10-20 deg more than on the level at 10 deg (human-facts U6), not a lunge."""
+    level, ten, fifteen = (front_knee(walked(Slope(d), gait)) for d in (0.0, 10.0, 15.0))
+    assert level + 5.0 < ten < min(level + 23.0, 33.0)
+    assert ten < fifteen < 38.0
+
+
+@pytest.mark.parametrize("body", [1.2, 2.1])
+@pytest.mark.parametrize("share", [0.5, 0.75])
+def test_whoever_walks_and_however_long_the_steps(body, share):
+    length = round(share * person(body).leg_length, 3)
+    motion = walked(Slope(12.0), body=body, step_length=length, more=body - 1.2)
+    assert front_knee(motion) < 35.0
+    assert broken(motion) == {}
+
+
+@pytest.mark.parametrize("deg", [5.0, 10.0, 15.0])
+@pytest.mark.parametrize("gait", ["neutral", "winter"])
+def test_the_heel_behind_never_sinks_again(gait, deg):
+    """From where it is up until the foot leaves."""
+    motion = walked(Slope(deg), gait)
+    pitch = legs(motion)[2]
+    for (frame, side), (leaves, _) in zip(
+        landings(motion, (3, 4)), landings(motion, (5, 6)), strict=True
+    ):
+        bears = motion.contacts[frame:leaves, side]
+        up = np.flatnonzero(~bears[:, 0])[0]
+        off = up + np.flatnonzero(~bears[up:].any(-1))[0]
+        assert np.diff(pitch[frame + up : frame + off, side]).max() < 0.05
+
+
+@pytest.mark.parametrize("deg", [5.0, 15.0])
+def test_hips_stand_over_the_feet_uphill(deg):
+    """The trunk leans: to hold the balance the hips are a little behind the ankles."""
+    motion = walked(Slope(deg))
+    positions = posed(motion)[0]
+    for frame in (0, -1):
+        hip, foot = (
+            np.mean([positions[frame, motion.skeleton.index(s + n)] for s in SIDES], axis=0)
+            for n in ("UpperLeg", "Foot")
+        )
+        assert -0.035 < (hip - foot)[2] < 0.0
+
+
+def test_hips_neither_jerk_nor_stop_where_slopes_change():
+    """Onto and off a flight the way of the hips has no corner: 22 m/s2 with one."""
+    ground = Stairs(0.15352596, 0.28609124, 8)
+    root = walked(ground, "winter", 2.01, more=1.29).root_position
+    change = np.abs(np.diff(root[:, 2], 2)) * FPS**2
+    assert change.max() < 12.0
