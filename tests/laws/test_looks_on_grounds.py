@@ -105,3 +105,19 @@ def test_hips_neither_jerk_nor_stop_where_slopes_change():
     root = walked(ground, "winter", 2.01, more=1.29).root_position
     change = np.abs(np.diff(root[:, 2], 2)) * FPS**2
     assert change.max() < 12.0
+
+
+# ------------------------------------------------------------------------------- length
+
+
+@pytest.mark.parametrize("body", [1.2, 1.75, 2.1])
+@pytest.mark.parametrize("deg", [-12.0, -8.0, -4.0, -1.0, 1.0, 4.0, 8.0, 12.0])
+def test_steps_on_slopes_are_as_long_as_the_paper_says(body, deg):
+    """[SM01] Eqs. 11-12 (downhill with the sign mended) scaled to the body, within 1 cm."""
+
+    def steady(ground):
+        motion = walked(ground, body=body, more=4.0 * body)
+        return float(np.diff(motion.labels.footstep_position[3:7, 2]).mean())
+
+    own = 0.623 - 0.0019 * deg if deg > 0.0 else 0.627 + 0.0075 * deg
+    assert steady(Slope(deg)) == pytest.approx(own * steady(Slope(0.0)) / 0.625, abs=0.01)
