@@ -107,6 +107,23 @@ def test_hips_neither_jerk_nor_stop_where_slopes_change():
     assert change.max() < 12.0
 
 
+# ------------------------------------------------------------------------------- stairs
+
+
+@pytest.mark.parametrize("rise", [-0.17, 0.17])
+@pytest.mark.parametrize("gait", ["neutral", "winter"])
+def test_ankles_are_not_bent_up_on_stairs(gait, rise):
+    """People 11 deg up and 21 deg down at most (human-facts K1); 40 and 34 before this held."""
+    motion = walked(Stairs(rise, 0.29, 8), gait, more=1.4)
+    knee, ankle, _ = legs(motion)
+    on = slice(*(landings(motion, (i,))[0][0] for i in (4, 8)))
+    bears = motion.contacts[on].any(-1)
+    stance, swing = ankle[on][bears].max(), ankle[on][~bears].max()
+    assert stance < (17.0 if rise > 0.0 else 23.0)
+    assert swing < 19.0
+    assert 85.0 < knee[on].max() < 100.0
+
+
 # ------------------------------------------------------------------------------- length
 
 
