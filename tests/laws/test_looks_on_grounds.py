@@ -6,11 +6,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from judge import broken, posed
+from judge import along_soles, broken, posed
 from people import person
 
 import gaitsmith
-from gaitsmith.ground import Slope, Stairs
+from gaitsmith.ground import HeightField, Slope, Stairs
 
 SIDES = ("left", "right")
 FPS = 120
@@ -138,3 +138,26 @@ def test_steps_on_slopes_are_as_long_as_the_paper_says(body, deg):
 
     own = 0.623 - 0.0019 * deg if deg > 0.0 else 0.627 + 0.0075 * deg
     assert steady(Slope(deg)) == pytest.approx(own * steady(Slope(0.0)) / 0.625, abs=0.01)
+
+
+# ------------------------------------------------------------------------------- ridges
+
+
+@pytest.mark.filterwarnings("ignore::gaitsmith.errors.GaitsmithWarning")
+@pytest.mark.parametrize("aslant", [0.0, 0.4])
+def test_nobody_starts_or_ends_standing_across_a_ridge(aslant):
+    """Feet stand apart fore and aft instead, their middle where it was; 12 mm sunk in before."""
+    cell, out = 0.04, []
+    z, x = np.meshgrid(np.arange(-1.5, 6.0, cell), np.arange(-2.0, 2.0, cell), indexing="ij")
+    along = np.cos(aslant) * (z - 0.04) + np.sin(aslant) * x
+    roof = np.abs((along + 2.0) % 4.0 - 2.0)  # ridges 4 m apart
+    ground = HeightField(-roof * np.tan(np.radians(8.0)), cell, (-2.0, -1.5))
+    motion = gaitsmith.walk(distance=4.0 / np.cos(aslant), ground=ground, body=2.0, fps=FPS)
+    assert -along_soles(motion).min() <= 0.010
+    place = motion.labels.footstep_position[:, [0, 2]]
+    for feet, end in ((slice(0, 2), 0.0), (slice(-2, None), 4.0 / np.cos(aslant))):
+        apart = np.diff(place[feet, 1])[0]
+        out.append(abs(apart))
+        np.testing.assert_allclose(place[feet].mean(axis=0), [0.0, end], atol=0.021)
+    assert min(out) > 0.03
+    assert max(out) <= 0.21
