@@ -124,6 +124,22 @@ def test_ankles_are_not_bent_up_on_stairs(gait, rise):
     assert 85.0 < knee[on].max() < 100.0
 
 
+@pytest.mark.parametrize(
+    ("ground", "do"),
+    [
+        (Stairs(-0.168, 0.583, 4), "be at 0.26,1.22 facing 93"),
+        (Stairs(-0.156, 0.484, 4), "walk to 0,0.69; be at 0.01,1.42 facing -156"),
+    ],
+)
+def test_who_turns_on_a_tread_comes_to_stand_there_without_a_jolt(ground, do):
+    """The hips have stopped when the last foot is down: 12 and 16 m/s2 before."""
+    motion = gaitsmith.walk(do=do, ground=ground, fps=FPS)
+    end = int(motion.labels.footstep_time[-1] * FPS)
+    change = np.abs(np.diff(motion.root_position[end - 4 :, 1], 2)) * FPS**2
+    assert change.max() < 4.0
+    assert legs(motion)[0][-1].max() < 12.0
+
+
 # ------------------------------------------------------------------------------- length
 
 
