@@ -45,6 +45,9 @@ WARP_COST, BACK_COST = 20.0, 400.0
 #: Reach of a leg over its length; turn of the knee from sample to sample (radians) that costs
 #: nothing, and what more costs, squared.
 STRAIGHT, UNHURRIED, KNEE_COST = 0.9995, 0.1, 6000.0
+#: Bend of the ankle (radians, toes up) beyond which a swinging foot hangs, by which share of what
+#: is more, how softly (radians) that sets in, and over what part of the swing at its ends.
+BENT_UP, HANGS, SOFTLY, HANGING = float(np.radians(12.0)), 0.8, float(np.radians(3.0)), 0.25
 #: Rounds of the beam's solver, and its penalty.
 ROUNDS, PENALTY = 160, 1.5e4
 
@@ -92,12 +95,43 @@ def over_edges(flights: Flights, body: Body, ground: Ground) -> Flights:
         lifts.append(lift)
     best = np.argmin(costs, axis=0)
     lift = np.array(lifts)[best, row]
-    by, back = np.array(WAYS)[best][f.swing].T
+    # the foot hangs from a knee that is bent so far, which asks for a little more lift
+    by, back = np.array(WAYS)[best].T
+    moved = read(warped(u, by[:, None]))
+    moved[..., 1] = plain[..., 1]
+    moved[..., :3] -= (back[:, None] * _drawn_back(u))[..., None] * ahead_[:, None]
+    hangs = _hanging(moved[..., :3] + lift[..., None] * UP - hip, moved[..., 3:5], u, body)
+    moved[..., 4] -= hangs
+    lift = beam(_needed(f, moved, u, body, ground))
+    by, back = by[f.swing], back[f.swing]
     out = pchip(axis, columns, 2.0 * f.swing + warped(f.u, by))
-    height = pchip((2.0 * row[:, None] + u).ravel(), lift.ravel(), 2.0 * f.swing + f.u)
+    more = np.stack([lift, hangs], axis=-1).reshape(-1, 2)
+    more = pchip((2.0 * row[:, None] + u).ravel(), more, 2.0 * f.swing + f.u)
     out[:, :3] -= (back * _drawn_back(f.u))[:, None] * ahead_[f.swing]
-    out[:, 1] = f.ankle[:, 1] + height
+    out[:, 1] = f.ankle[:, 1] + more[:, 0]
+    out[:, 4] -= more[:, 1]
     return replace(f, ankle=out[:, :3], heading=out[:, 3], pitch=out[:, 4], bend=out[:, 5])
+
+
+def _hanging(
+    leg: Float[np.ndarray, "S K 3"],
+    turns: Float[np.ndarray, "S K 2"],
+    u: Float[np.ndarray, "K"],
+    body: Body,
+) -> Float[np.ndarray, "S K"]:
+    """How much lower the toes hang, radians, than with an ankle that is bent up too far.
+
+    ``leg`` leads from hip to ankle; ``turns`` are the foot's heading and pitch.
+    """
+    heading, pitch = np.moveaxis(turns, -1, 0)
+    gone = leg[..., 0] * np.sin(heading) + leg[..., 2] * np.cos(heading)
+    far = np.sqrt((leg**2).sum(-1))
+    far = np.clip(far, abs(body.thigh - body.shin) + 1e-6, STRAIGHT * body.leg_length)
+    cosine = (far**2 + body.shin**2 - body.thigh**2) / (2.0 * far * body.shin)
+    shin = np.arctan2(gone, -leg[..., 1]) - np.arccos(np.clip(cosine, -1.0, 1.0))
+    over = (pitch - shin - BENT_UP) / SOFTLY
+    over = SOFTLY * np.where(over > 30.0, over, np.log1p(np.exp(np.minimum(over, 30.0))))
+    return HANGS * over * smoothstep(u / HANGING) * smoothstep((1.0 - u) / HANGING)
 
 
 def _drawn_back(u: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:

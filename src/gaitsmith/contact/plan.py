@@ -11,6 +11,8 @@ from gaitsmith.contact.clearing import cleared
 from gaitsmith.contact.flights import Flights
 from gaitsmith.contact.foothold import Footholds, sole_in_air
 from gaitsmith.contact.reach import (
+    ENDING,
+    ENDING_SPREAD,
     REAR_REACH,
     REAR_SLACK,
     SPREAD,
@@ -93,11 +95,22 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
         last = walk.landing.pitch[-1]
         ankle[-1, swing] = targets.at(-1).ankle(body.foot, last, 0.0)
         slack[-1, swing] = 0.0
-    spread = SPREAD if isinstance(ground, Flat) else UNEVEN_SPREAD
     when = _when(walk, steps)
-    down_by = lowering(
-        walk.at, hip, ankle, slack, leg_length=body.leg_length, spread=spread, when=when
-    )
+
+    def lowered(spread: float) -> Float[np.ndarray, "M"]:
+        return lowering(
+            walk.at, hip, ankle, slack, leg_length=body.leg_length, spread=spread, when=when
+        )
+
+    if isinstance(ground, Flat):
+        down_by = lowered(SPREAD)
+    else:
+        down_by = lowered(UNEVEN_SPREAD)
+        if walk.toe_off[-1] >= 1.0 and len(steps) > 1 and down_by.any():
+            # who comes to stand there stays as the last step ends: no lowering goes on
+            stands_at = float(len(steps) - 1)
+            share = smoothstep((walk.at - stands_at) / ENDING + 1.0)
+            down_by = down_by + share * (lowered(ENDING_SPREAD) - down_by)
     walk.curves["center"][:, 1] -= down_by
     hip[..., 1] -= down_by[:, None]
     extra = _rear_raise(walk, body, stands, rear, hip)

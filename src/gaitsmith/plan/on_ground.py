@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.conventions import SIDES
+from gaitsmith.conventions import SIDES, ahead
 from gaitsmith.errors import GaitsmithWarning, InfeasibleError
-from gaitsmith.ground import Flat
-from gaitsmith.plan.footholds import HIGHEST, SHORT_TREADS, STEEPEST
+from gaitsmith.ground import Flat, Slope
+from gaitsmith.plan.footholds import HIGHEST, MOST_HANGING, MOST_SUNK, SHORT_TREADS, STEEPEST
 from gaitsmith.plan.footing import footing
 from gaitsmith.plan.footsteps import StepPlan
 
@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 #: Soles that sink in deeper than this between their bearing points are spoken of, meters.
 SINKS = 0.0005
+#: Steps (m) and their largest number by which feet that stand side by side on a ridge are set
+#: apart, and rises (m) that are not climbed for it.
+APART, MOST_APART, HARDLY = 0.02, 5, 0.03
 
 
 def on_ground(plan: StepPlan | Timeline, body: Body, ground: Ground) -> StepPlan | Timeline:
@@ -46,6 +49,7 @@ def on_ground(plan: StepPlan | Timeline, body: Body, ground: Ground) -> StepPlan
     if isinstance(ground, Flat):
         return plan
     if isinstance(plan, StepPlan):
+        plan = _off_ridges(plan, body, ground)
         height = _heights(plan.position, plan.heading, plan.side, body, ground)
         position = np.array(plan.position)
         position[:, 1] = height
@@ -55,6 +59,45 @@ def on_ground(plan: StepPlan | Timeline, body: Body, ground: Ground) -> StepPlan
             _check_rises(rises, position[1:], body)
         return replace(plan, position=position)
     return _timeline(plan, body, ground)
+
+
+def _off_ridges(plan: StepPlan, body: Body, ground: Ground) -> StepPlan:
+    """``plan`` whose feet do not stand on a ridge where a path begins and ends.
+
+    Feet that stand side by side there are set apart fore and aft, as little as does and rather one
+    ahead and one back, so that their middle stays. Given footsteps are where they are said to be.
+    """
+    if plan.path is None or isinstance(ground, Slope):
+        return plan
+    swings = int(plan.side[0] != plan.side[2])  # which of the first two: it stands behind
+    ends = [[swings, 1 - swings]] * (plan.kinds[0] == "start")
+    ends += [[-2, -1]] * (plan.kinds[-1] == "stop")
+    position = np.array(plan.position)
+    ways = np.concatenate([[0.0], *([d, -d] for d in np.arange(1, MOST_APART + 1) * APART)])
+    rear, front = (w.ravel() for w in np.meshgrid(ways, ways, indexing="ij"))
+    cost = np.abs(rear) + np.abs(front) + 0.5 * np.abs(rear + front)
+    order = np.arange(len(position))
+    for pair in ends:
+        fits = []
+        for i in pair:
+            way = ahead(np.array(plan.direction[i]))[[0, 2]]
+            place = position[i, [0, 2]] + ways[:, None] * way
+            heading = np.full(len(ways), plan.heading[i])
+            found = footing(ground, place, heading, body.foot)
+            good = found.stands & (found.hangs <= MOST_HANGING) & (found.sinks <= MOST_SUNK)
+            good &= found.slope <= np.tan(STEEPEST)
+            fits.append(good & (np.abs(found.height - found.height[0]) <= HARDLY))
+        both = (fits[0][:, None] & fits[1][None, :]).ravel() & (rear <= front)
+        if both[0] or not both.any():
+            continue
+        best = int(np.where(both, cost, np.inf).argmin())
+        for i, by in zip(pair, (rear[best], front[best]), strict=True):
+            position[i] += by * ahead(np.array(plan.direction[i]))
+        if pair[0] == swings:
+            order[:2] = pair  # of those that stand the rear one comes first
+    return replace(
+        plan, side=plan.side[order], heading=plan.heading[order], position=position[order]
+    )
 
 
 def _timeline(plan: Timeline, body: Body, ground: Ground) -> Timeline:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,11 +11,12 @@ import numpy as np
 from gaitsmith.body.rig import spine_names
 from gaitsmith.contact import StepCurves
 from gaitsmith.contact.standing import standing
-from gaitsmith.conventions import HEEL, LOCAL_KINDS, ahead
+from gaitsmith.conventions import HEEL, LOCAL_KINDS, UP, ahead
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.rotations import exp, log, multiply
 from gaitsmith.synthesis.overlay import upper_joints
 from gaitsmith.synthesis.step import BatchGenerator, PreparedStep, TabledStep, WalkerState
+from gaitsmith.synthesis.uphill import heel_rises, held_back, with_risen_heels
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 
     from gaitsmith.body.body import Body
     from gaitsmith.contact import ReferenceStep
+    from gaitsmith.contact.foothold import Footholds
     from gaitsmith.ground import Ground
     from gaitsmith.plan.footsteps import Footstep, PlannedStep
     from gaitsmith.synthesis.step import StepGenerator
@@ -40,8 +43,8 @@ FLAT_RISE, HEEL_FIRST, BALL_FIRST, TOES_DOWN = 0.08, 0.10, 0.20, float(np.radian
 NEARLY_FLAT = float(np.radians(2.5))
 #: Part of the step in which a heel comes down after the ball.
 HEEL_DOWN = 0.3
-#: The heel that stays above on a deep step comes up so much more (radians), from this phase on.
-HEEL_UP, HEEL_RISES = float(np.radians(18.0)), 0.4
+#: The heel that stays above on a deep step comes up so much more (radians).
+HEEL_UP = float(np.radians(24.0))
 #: A lower rise (m) is no step.
 LEAST_STEP = 0.02
 
@@ -66,8 +69,9 @@ class Lie:
         ``(k,)`` whether an edge lies between them.
     heel_hangs
         ``(k,)`` whether there is no ground under the heel.
-    flattens
-        Whether soles are yet to land flatter uphill.
+    level_walk
+        Whether the walk knows nothing of slopes: how soles land and where hips are is yet to
+        be done.
     """
 
     place: Float[np.ndarray, "k 2"]
@@ -77,7 +81,7 @@ class Lie:
     rise: Float[np.ndarray, "k"]
     stepped: Bool[np.ndarray, "k"]
     heel_hangs: Bool[np.ndarray, "k"]
-    flattens: bool = True
+    level_walk: bool = True
 
     def plane(self, i: int, at: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n"]:
         """Height over x,z ``at`` of the plane through footstep ``i``."""
@@ -111,10 +115,10 @@ class UnevenGenerator:
         """See :meth:`gaitsmith.synthesis.step.BatchGenerator.prepare_all`."""
         feet = list({id(f): f for s in steps for f in _feet(s)}.values())
         number = {id(f): i for i, f in enumerate(feet)}
-        lie = _lie(steps, feet, number, body, self._ground)
+        lie, stands = _lie(steps, feet, number, body, self._ground)
         level = _levelled(steps)
         if self._climbs:
-            lie = replace(lie, flattens=False)
+            lie = replace(lie, level_walk=False)
             level = _climbing(level, steps, lie, number)
         if isinstance(self._inner, BatchGenerator):
             prepared = self._inner.prepare_all(body, state, level)
@@ -123,12 +127,26 @@ class UnevenGenerator:
             for step in level:
                 prepared.append(self._inner.prepare(body, state, step))
                 state = prepared[-1].end
-        out: list[PreparedStep] = []
-        for step, done in zip(steps, prepared, strict=True):
-            pick = [number[id(f)] for f in (step.origin, step.stance, step.target)]
-            reference = _lifted(step, done.reference, lie, pick, body)
-            out.append(TabledStep(step.duration, done.end, reference, body, self._ground))
-        return out
+        picks = [[number[id(f)] for f in _feet(s)] for s in steps]
+        references = [p.reference for p in prepared]
+        lifted = [
+            _lifted(s, r, lie, pick, body)
+            for s, r, pick in zip(steps, references, picks, strict=True)
+        ]
+        behind = np.array([pick[:2] for pick in picks] + [picks[-1][1:]])
+        rises = np.zeros(len(behind))
+        if not self._climbs:
+            rises = heel_rises(steps, references, lifted, stands, behind, body)
+        on_steps = lie.stepped[behind[:, 1]]
+        rises[on_steps] = [_heel_rise(lie, i, body) for i in behind[on_steps, 1]]
+        lifted = [
+            with_risen_heels(r, *two)
+            for r, two in zip(lifted, pairwise(rises.tolist()), strict=True)
+        ]
+        return [
+            TabledStep(step.duration, done.end, reference, body, self._ground)
+            for step, done, reference in zip(steps, prepared, lifted, strict=True)
+        ]
 
 
 def _feet(step: PlannedStep) -> list[Footstep]:
@@ -176,7 +194,7 @@ def _lie(
     number: dict[int, int],
     body: Body,
     ground: Ground,
-) -> Lie:
+) -> tuple[Lie, Footholds]:
     """Levels beside the footsteps; slopes from one footstep to the next but one."""
     position = np.array([f.position for f in feet])
     stands = standing(position, np.array([f.heading for f in feet]), ground, body.foot)
@@ -209,7 +227,8 @@ def _lie(
     if ground.stepped:
         stepped = np.abs(rise) > LEAST_STEP
     hangs = np.zeros_like(stepped) if stands.bears is None else ~stands.bears[:, HEEL]
-    return Lie(place, level, slope[:, None] * way + across, slope, rise, stepped, hangs)
+    gradient = slope[:, None] * way + across
+    return Lie(place, level, gradient, slope, rise, stepped, hangs), stands
 
 
 def _lifted(
@@ -220,7 +239,13 @@ def _lifted(
     at = curves.center[:, [0, 2]] + reference.origin[[0, 2]]
     base, slope = _base(step, lie, pick, at, curves.phase)
     lifted = StepCurves.trusted(curves.phase, np.array(curves.table))
-    lifted.center[:, 1] += base
+    lifted.center[:] += base[:, None] * UP
+    back = slope
+    if not lie.level_walk:  # its hips know slopes, but no stairs
+        on_steps = replace(lie, slope=np.where(lie.stepped, lie.slope, 0.0))
+        back = _base(step, on_steps, pick, at, curves.phase)[1]
+    back = held_back(back, curves.phase, step.kind, body)
+    lifted.center[:] -= back[:, None] * ahead(curves.heading)
     lifted.ankle[..., 1] += base[:, None]
     lifted.pitch[:], lifted.bend[:] = _landing(reference, lie, pick, body)
     lifted.pelvis[:], lifted.upper[:] = leaning(body, curves.pelvis, curves.upper, _lean(slope))
@@ -253,15 +278,6 @@ def _landing(
         own += (wanted - min(lands, 0.0)) * (1.0 - smoothstep(phase / HEEL_DOWN))
         bend[:, side] = np.maximum(-own - curves.meta[:, side], bend[:, side])
     pitch[:, side] = own
-    # going down, the heel that stays behind comes up before the other foot is down
-    rises = _heel_rise(lie, target, body) * smoothstep((phase - HEEL_RISES) / (1.0 - HEEL_RISES))
-    pitch[:, side] -= rises
-    bend[:, side] += rises
-    stayed = min(reference.toe_off, 1.0)
-    falls = _heel_rise(lie, stance, body) * (1.0 - smoothstep(phase / stayed))
-    falls = np.where(phase <= stayed, falls, 0.0)
-    pitch[:, 1 - side] -= falls
-    bend[:, 1 - side] += falls
     if reference.toe_off < 1.0:
         u = (phase - reference.toe_off) / (1.0 - reference.toe_off)
         share = smoothstep((u - 0.3) / 0.7)
@@ -282,7 +298,7 @@ def _heel_rise(lie: Lie, foot: int, body: Body) -> float:
 def _landing_pitch(lands: float, lie: Lie, foot: int, body: Body) -> float:
     """Pitch with which a sole lands at a footstep that would land with ``lands`` on the level."""
     if not lie.stepped[foot]:
-        flatter = _flatter(float(lie.slope[foot])) if lie.flattens else 0.0
+        flatter = _flatter(float(lie.slope[foot])) if lie.level_walk else 0.0
         wanted = lands * (1.0 - flatter) if lands > 0.0 else lands
     else:
         rise = float(lie.rise[foot]) / body.leg_length
