@@ -111,7 +111,13 @@ def _ground(value: object, info: ValidationInfo) -> str:
 def _body(value: object, info: ValidationInfo) -> Any:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ValueError(f"must be a height in meters, a name or a file, got {value!r}")
-    if isinstance(value, str) and Path(value).suffix.lower() in (".toml", ".bvh", ".amc", ".npz"):
+    if isinstance(value, str) and Path(value).suffix.lower() in (
+        ".toml",
+        ".bvh",
+        ".amc",
+        ".glb",
+        ".npz",
+    ):
         value = _file(value, info)
     return said(body_of, value)
 
