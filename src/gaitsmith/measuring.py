@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaitsmith.errors import InfeasibleError, UnknownFormatError
-from gaitsmith.io import READERS, load_performance
+from gaitsmith.io import PERFORMANCE_READERS, READERS, load_performance
 from gaitsmith.io.npz import walkers_in
 from gaitsmith.learning import load_clip
 from gaitsmith.measures.report import measured
@@ -24,8 +24,8 @@ def measure(clip: str | PathLike[str] | Motion, *, unit: str | None = None) -> F
     Parameters
     ----------
     clip
-        A file (``.bvh``, ``.amc``, ``.npz``) or a Motion. What a generated motion knows of its
-        contacts and footsteps is used; else the floor, contacts and footsteps are found.
+        A file (``.bvh``, ``.amc``, ``.glb``, ``.npz``) or a Motion. What a generated motion knows
+        of its contacts and footsteps is used; else the floor, contacts and footsteps are found.
     unit
         Of a BVH or AMC file, see :func:`gaitsmith.io.bvh_motion.read_bvh`.
 
@@ -62,9 +62,13 @@ def measure(clip: str | PathLike[str] | Motion, *, unit: str | None = None) -> F
 
 
 def people_in(path: str | PathLike[str]) -> list[tuple[str, Path | Motion]]:
-    """What to measure in a file, and how to call it: everybody in an npz of several people."""
+    """What to measure in a file, and how to call it: everybody in a file of several people."""
     path = Path(path)
-    names = walkers_in(path) if path.suffix.lower() == ".npz" else ()
-    if len(names) < 2:
+    if path.suffix.lower() == ".npz" and len(walkers_in(path)) < 2:
         return [(str(path), path)]
-    return [(f"{path}:{name}", motion) for name, motion in load_performance(path)]
+    if path.suffix.lower() not in PERFORMANCE_READERS:
+        return [(str(path), path)]
+    people = list(load_performance(path))
+    if len(people) < 2:
+        return [(str(path), motion) for _, motion in people]
+    return [(f"{path}:{name}", motion) for name, motion in people]

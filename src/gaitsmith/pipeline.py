@@ -22,6 +22,7 @@ from gaitsmith.motion.performance import Performance
 from gaitsmith.plan.follow import curve_share, follow
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.given import GivenSteps, plan_given
+from gaitsmith.plan.low import with_low
 from gaitsmith.plan.on_ground import on_ground
 from gaitsmith.plan.pace import Pace, choose_pace
 from gaitsmith.plan.paths import Path as WalkPath
@@ -177,8 +178,8 @@ def walk(
         once it has arrived; ``until`` is None: no longer than the stop needs.
     surroundings
         What stands around (:class:`~gaitsmith.plan.surroundings.Surroundings`): obstacles that
-        scripts walk round and everything else must keep clear of, bars to duck under, posts to
-        lean past.
+        scripts walk round and everything else must keep clear of, or, where they are low, that
+        are stepped over or on; bars to duck under, posts to lean past.
 
     Returns
     -------
@@ -247,11 +248,12 @@ def walk(
         for name, (other, told) in gaits_named(actions, gaits or {}, manner).items()
     }
     around = Surroundings.read(surroundings)
+    base, ground = ground, with_low(ground, around, who)
     recipe = {
         "gaitsmith": __version__,
         "walk": {
             **said,
-            **({} if ground == Flat() else {"ground": ground.as_json()}),
+            **({} if base == Flat() else {"ground": base.as_json()}),
             "body": body_to_dict(who),
             "gait": named,
             **({} if walker == "kinematic" else {"walker": walker}),

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 
 import numpy as np
+import shapely
 from scipy.spatial.transform import Rotation
 
 SIDES = ("left", "right")
@@ -70,6 +71,8 @@ def ground_height(ground, x, z):
     if ground["kind"] == "stairs":
         climbed = np.floor((z - ground["start"]) / ground["tread"] + 1e-9) + 1.0
         return ground["rise"] * np.clip(climbed, 0.0, ground["count"])
+    if ground["kind"] == "boxes":
+        return ground_height(ground["ground"], x, z) + on_boxes(ground["boxes"], x, z)
     height = np.reshape(ground["height"], ground["shape"])
     u = np.clip((x - ground["origin"][0]) / ground["cell"], 0.0, height.shape[1] - 1 - 1e-9)
     v = np.clip((z - ground["origin"][1]) / ground["cell"], 0.0, height.shape[0] - 1 - 1e-9)
@@ -79,12 +82,23 @@ def ground_height(ground, x, z):
     return (1.0 - a) * near + a * ((1.0 - b) * height[i + 1, j] + b * height[i + 1, j + 1])
 
 
+def on_boxes(boxes, x, z):
+    """What the highest box over each point adds."""
+    at, out = shapely.points(x, z), np.zeros(x.shape)
+    for box in boxes:
+        outline = shapely.Polygon(box["points"])
+        out = np.where(shapely.covers(outline, at), np.maximum(out, box["height"]), out)
+    return out
+
+
 def over(motion, points):
-    """(3, ...) meters over the ground; beside a riser read on both sides too, 1 mm off."""
+    """(3 or 5, ...) meters over the ground; beside a riser read on both sides too, 1 mm off."""
     ground = json.loads(motion.labels.ground)
-    aside = 1e-3 if ground["kind"] == "stairs" else 0.0
+    aside = 1e-3 if ground["kind"] in ("stairs", "boxes") else 0.0
+    ways = [(0.0, 0.0), (0.0, aside), (0.0, -aside)]
+    ways += [(aside, 0.0), (-aside, 0.0)] if ground["kind"] == "boxes" else []
     x, y, z = np.moveaxis(points, -1, 0)
-    return np.stack([y - ground_height(ground, x, z + d) for d in (0.0, aside, -aside)])
+    return np.stack([y - ground_height(ground, x + d, z + e) for d, e in ways])
 
 
 def runs(flags):

@@ -6,6 +6,8 @@ A reader may give a result or say that the file is broken; nothing else, and not
 from __future__ import annotations
 
 import io
+import json
+import struct
 import tempfile
 import warnings
 from pathlib import Path
@@ -93,6 +95,10 @@ STO = (
     b"time\thip\tknee\n0\t1\t2\n0.1\t2\t3\n0.2\t3\t4\n"
 )
 OBJ = b"# two triangles\nv 0 0 0\nv 1 0.1 0\nv 1 0 1\nv 0 0.2 1\nvn 0 1 0\nf 1//1 2//1 3//1 -1\n"
+BOXES = (
+    b'ground = "slope:5"\n[[box]]\nname = "kerb"\n'
+    b"points = [[-2, 1.5], [2, 1.5], [2, 1.8], [-2, 1.8]]\nheight = 0.12\n"
+)
 FACTS = b"cell = 0.5\norigin = [0.0, 1.0]\nheight = [0.0, 1.5]\n"
 
 
@@ -109,6 +115,41 @@ def _npz() -> bytes:
     return file.getvalue()
 
 
+def _glb() -> bytes:
+    """A chain of three joints, one of which turns."""
+    names = ("hips", "leftUpperLeg", "leftLowerLeg")
+    nodes = [
+        {"name": name, "translation": [0.0, 0.5, 0.0], "children": [k + 1] if k < 2 else []}
+        for k, name in enumerate(names)
+    ]
+    document = {
+        "asset": {"version": "2.0", "extras": {"gaitsmith": {"fps": 10.0, "frames": 2}}},
+        "nodes": nodes,
+        "skins": [{"joints": [0, 1, 2]}],
+        "animations": [
+            {
+                "channels": [{"sampler": 0, "target": {"node": 1, "path": "rotation"}}],
+                "samplers": [{"input": 0, "output": 1, "interpolation": "LINEAR"}],
+            }
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 2, "type": "SCALAR"},
+            {"bufferView": 1, "componentType": 5126, "count": 2, "type": "VEC4"},
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": 8},
+            {"buffer": 0, "byteOffset": 8, "byteLength": 32},
+        ],
+        "buffers": [{"byteLength": 40}],
+    }
+    numbers = np.array([0.0, 0.1, 0, 0, 0, 1, 0, 1, 0, 0], dtype="<f4").tobytes()
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    size = 20 + len(text) + 8 + len(numbers)
+    head = struct.pack("<4sIII4s", b"glTF", 2, size, len(text), b"JSON")
+    return head + text + struct.pack("<I4s", len(numbers), b"BIN\0") + numbers
+
+
 #: A good file of each suffix; an .asf is read with a good .amc beside it, a .png with its facts.
 SEEDS: dict[str, bytes] = {
     ".bvh": BVH,
@@ -120,9 +161,11 @@ SEEDS: dict[str, bytes] = {
     ".obj": OBJ,
     ".png": _png(),
     ".npz": _npz(),
+    ".toml": BOXES,
+    ".glb": _glb(),
 }
 #: Those that are grounds.
-GROUND_FILES = (".obj", ".png", ".npz")
+GROUND_FILES = (".obj", ".png", ".npz", ".toml")
 #: Words that mean something to some reader: what mutations put in.
 WORDS: tuple[bytes, ...] = (
     *(b"HIERARCHY", b"MOTION", b"JOINT x", b"ROOT y", b"End Site", b"OFFSET 0 0 0", b"{", b"}"),

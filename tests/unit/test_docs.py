@@ -17,7 +17,9 @@ ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))
 #: Pages whose examples are run; a tutorial must have some, the others may.
-PAGES = [DOCS / "index.md", *TUTORIALS, ROOT / "README.md"]
+PAGES = [*sorted(DOCS.rglob("*.md")), ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
+#: Those whose examples take long.
+SLOW = {"docs/obstacles.md", "docs/reference/cli.md", "docs/reference/grounds.md", "docs/styles.md"}
 SHELL = {"bash", "console", "sh", "shell"}
 #: Commands that a tutorial may show and that a test does not run.
 SET_UP = {"git", "make", "pip", "python3", "source"}
@@ -71,6 +73,12 @@ def named(kind: set[str]) -> list[Path]:
     return [page for page in PAGES if any(block.language in kind for block in blocks(page))]
 
 
+def marked(pages: list[Path]) -> list[object]:
+    """The same as parameters, those that take long marked so."""
+    slow = [pytest.mark.slow]
+    return [pytest.param(page, marks=slow if ids(page) in SLOW else []) for page in pages]
+
+
 def test_there_are_tutorials_and_each_shows_python():
     assert TUTORIALS
     assert set(TUTORIALS) <= set(named({"python"}))
@@ -84,7 +92,7 @@ def test_every_block_says_what_it_is(page):
     assert not odd, f"{page.name}: unknown language of a block: {odd}; known: {sorted(known)}"
 
 
-@pytest.mark.parametrize("page", named({"python"}), ids=ids)
+@pytest.mark.parametrize("page", marked(named({"python"})), ids=ids)
 def test_the_python_of_a_page_runs_as_printed(page, tmp_path, monkeypatch):
     """One namespace a page, from the top, as a reader would type it."""
     monkeypatch.chdir(tmp_path)
@@ -97,7 +105,7 @@ def test_the_python_of_a_page_runs_as_printed(page, tmp_path, monkeypatch):
             exec(code, namespace)
 
 
-@pytest.mark.parametrize("page", named(SHELL), ids=ids)
+@pytest.mark.parametrize("page", marked(named(SHELL)), ids=ids)
 def test_the_commands_of_a_page_run_as_printed(page, tmp_path):
     save_files(page, tmp_path)
     lines = [
@@ -116,6 +124,25 @@ def test_the_commands_of_a_page_run_as_printed(page, tmp_path):
         assert run.returncode == 0, f"{page.name}: {line}\n{run.stderr}"
 
 
+#: Commands within a line of text.
+INLINE = re.compile(r"`((?:python -m )?gaitsmith [a-z][^`]*)`")
+
+
+def test_commands_within_the_text_are_known():
+    """Their words and options; what they are given is often a placeholder there."""
+    known = {name: help_of(name) for name in COMMANDS}
+    odd = []
+    for page in PAGES:
+        for command in INLINE.findall(page.read_text(encoding="utf-8")):
+            name = command.removeprefix("python -m ").split()[1]
+            options = re.findall(r"(?<![\w-])--[a-z][\w-]*", command)
+            if name not in known:
+                odd.append(f"{ids(page)}: {command}")
+            else:
+                odd += [f"{ids(page)}: {name} {o}" for o in options if o not in known[name]]
+    assert not odd
+
+
 def test_every_tutorial_and_page_is_in_the_navigation():
     """A page that nobody can reach is a page that nobody reads."""
     nav = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
@@ -127,6 +154,10 @@ def help_of(*words: str) -> str:
     command = [sys.executable, "-m", "gaitsmith", *words, "--help"]
     run = subprocess.run(command, capture_output=True, text=True, check=True)
     return run.stdout
+
+
+#: What ``gaitsmith --help`` names.
+COMMANDS = ("demo", "walk", "learn", "compose", "convert", "measure", "list")
 
 
 def suffixes() -> list[str]:

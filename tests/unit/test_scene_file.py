@@ -9,14 +9,15 @@ import pytest
 
 import gaitsmith
 from gaitsmith import FileFormatError, read_scene
+from gaitsmith._toml_lines import line_at, lines_of
 from gaitsmith.body.presets import body_from
 from gaitsmith.plan.given import GivenSteps
 from gaitsmith.plan.script import BeAt, Face, Follow, Lean, LookAt, Stand, Step, Tempo, Turn, WalkTo
 from gaitsmith.plan.start import Start
 from gaitsmith.plan.surroundings import Bar, Obstacle, Post
-from gaitsmith.scene.lines import line_at, lines_of
 from gaitsmith.walks.learned import write_gait
 
+CORNER = "[[obstacle]]\npoints = [[0, 0], [1, 0], [1, 1]]\n"
 TEMPO = Tempo(step_length=0.4)
 
 
@@ -226,6 +227,18 @@ def test_all_that_is_wrong_is_said_at_once_with_its_place(read):
         ("distance = 1\n[[obstacle]]\npoints = [[0, 0], [1, 1]]", "a polygon needs three corners"),
         ("distance = 1\n[[obstacle]]\npoints = [[0, 0], [1, 1], [2, 2]]", "obstacle 1: points"),
         ("distance = 1\n[[obstacle]]\n", "obstacle 1, points: is missing"),
+        (
+            f"distance = 1\n{CORNER}height = 0.01",
+            "line 4: obstacle 1, height: must be at least 0.02",
+        ),
+        (
+            f"distance = 1\n{CORNER}height = 11",
+            "line 4: obstacle 1, height: must be at most 10 met",
+        ),
+        (f"distance = 1\n{CORNER}height = nan", "line 4: obstacle 1, height: must be a finite nu"),
+        (f"distance = 1\n{CORNER}height = 'low'", "line 4: obstacle 1, height: must be a number"),
+        (f"distance = 1\n{CORNER}heigth = 1", "line 4: obstacle 1, heigth: unknown key, did you"),
+        ('distance = 1\nground = "none.toml"', "none.toml: cannot be read: No such file"),
         (
             "distance = 1\n[[post]]\nat = [0, 0]\ntop = 1\nbottom = 2",
             "top 1 m must be above",

@@ -14,10 +14,13 @@ SQUARE = ((0.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0))
 
 def test_a_recipe_holds_them_exactly():
     given = Surroundings(
-        (Obstacle(SQUARE, "table"),), (Bar((0, 3), (1, 3), 1.4),), (Post((0.3, 4)),)
+        (Obstacle(SQUARE, "table"), Obstacle(SQUARE, "step", 0.2)),
+        (Bar((0, 3), (1, 3), 1.4),),
+        (Post((0.3, 4)),),
     )
     again = read_surroundings(json.loads(json.dumps(given.as_dict())))
     assert again == read_surroundings(given) == read_surroundings(again)
+    assert "height" not in given.as_dict()["obstacles"][0]
     assert read_surroundings(None).empty
     assert not given.empty
 
@@ -42,6 +45,14 @@ def test_an_outline_may_be_closed_by_its_first_corner():
         ({"obstacles": [{"points": [(0, 0), (1, 0), (float("nan"), 1)]}]}, "corner 3 of 'obst"),
         ({"obstacles": [{"points": [(0, 0), (1, 0), 3]}]}, "must be points x,z"),
         ({"obstacles": [{"points": SQUARE, "name": ""}]}, "must be text"),
+        (
+            {"obstacles": [{"points": SQUARE, "height": 0.01}]},
+            "height of 'obstacle' must be from 0",
+        ),
+        (
+            {"obstacles": [{"points": SQUARE, "height": "low"}]},
+            "finite number of meters, got 'low'",
+        ),
         ({"bars": [{"begin": (0, 1), "end": (1, 1), "height": -1}]}, "height of 'bar'"),
         ({"bars": [{"begin": (0, 1), "end": 1, "height": 1}]}, "the end of 'bar'"),
         ({"bars": [{"begin": (0, 1), "end": (0, 2), "height": 1, "radius": 0}]}, "radius of 'bar'"),

@@ -10,7 +10,7 @@ import typer
 
 
 def convert(
-    source: Annotated[Path, typer.Argument(metavar="IN", help="*.bvh, *.amc or *.npz.")],
+    source: Annotated[Path, typer.Argument(metavar="IN", help="*.bvh, *.amc, *.glb or *.npz.")],
     target: Annotated[Path, typer.Argument(metavar="OUT", help="A suffix of `list formats`.")],
     fps: Annotated[float | None, typer.Option(help="Frames per second; else as in IN.")] = None,
     unit: Annotated[

@@ -26,7 +26,7 @@ _COLUMN = 18
 
 def measure(
     files: Annotated[
-        list[Path], typer.Argument(metavar="FILE...", help="*.bvh, *.amc or *.npz, any rig.")
+        list[Path], typer.Argument(metavar="FILE...", help="*.bvh, *.amc, *.glb or *.npz, any rig.")
     ],
     unit: Annotated[
         str | None,

@@ -49,7 +49,7 @@ def walk(
         str,
         typer.Option(
             metavar="GROUND",
-            help="flat, slope:DEG, stairs:RISE,TREAD,COUNT, or FILE.npz|.png|.obj.",
+            help="flat, slope:DEG, stairs:RISE,TREAD,COUNT, or FILE.npz|.png|.obj|.toml.",
         ),
     ] = "flat",
     body: Annotated[

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from gaitsmith.ground.boxes import Box, Boxes
 from gaitsmith.ground.edges import Crossings, Edges
 from gaitsmith.ground.flat import Flat
 from gaitsmith.ground.foot_plane import FootPlane, foot_plane
@@ -15,6 +16,8 @@ from gaitsmith.ground.stairs import Stairs
 
 __all__ = [
     "GROUNDS",
+    "Box",
+    "Boxes",
     "Crossings",
     "Edges",
     "Flat",

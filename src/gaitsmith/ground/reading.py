@@ -14,12 +14,11 @@ from gaitsmith.errors import (
     UnknownFormatError,
     UnknownNameError,
 )
-from gaitsmith.ground.flat import Flat
+from gaitsmith.ground.boxes import BASES, Boxes
+from gaitsmith.ground.boxes_file import read_boxes
 from gaitsmith.ground.heightfield import MOST_SAMPLES, HeightField
 from gaitsmith.ground.mesh import field_from_mesh
 from gaitsmith.ground.obj import read_obj
-from gaitsmith.ground.slope import Slope
-from gaitsmith.ground.stairs import Stairs
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,13 +28,8 @@ if TYPE_CHECKING:
     from gaitsmith.ground.model import Ground
 
 #: Grounds by the name that the command line and JSON use; the kit of tests/conformance picks
-#: each up from here. A new ground is one class in one file and one line here.
-GROUNDS: dict[str, type[Ground]] = {
-    "flat": Flat,
-    "slope": Slope,
-    "stairs": Stairs,
-    "heightfield": HeightField,
-}
+#: each up from here. A new ground is one class in one file and one line in ``BASES``.
+GROUNDS: dict[str, type[Ground]] = {**BASES, "boxes": Boxes}
 #: How grounds of a few numbers are written, and what the numbers are.
 _WORDS: dict[str, tuple[str, int]] = {
     "flat": ("flat", 0),
@@ -47,8 +41,9 @@ _WORDS: dict[str, tuple[str, int]] = {
 def read_ground(text: str | Path) -> Ground:
     """Ground of ``flat``, ``slope:DEG``, ``stairs:RISE,TREAD,COUNT`` or of a file.
 
-    Files are height fields (``.npz``; ``.png`` of 16 bits with a ``.toml`` of the same name)
-    or meshes looked at from above (``.obj``); docs/reference/grounds.md has them in full.
+    Files are height fields (``.npz``; ``.png`` of 16 bits with a ``.toml`` of the same name),
+    meshes looked at from above (``.obj``), or boxes on a ground (``.toml``);
+    docs/reference/grounds.md has them in full.
 
     Raises
     ------
@@ -65,9 +60,10 @@ def read_ground(text: str | Path) -> Ground:
         return _read_file(Path(text))
     if name in _WORDS:
         return _from_words(name, numbers if colon else None)
-    if name == "heightfield":
+    if name in ("heightfield", "boxes"):
+        known = [".toml"] if name == "boxes" else sorted(set(_FILES) - {".toml"})
         raise InvalidInputError(
-            f"ground 'heightfield' is read from a file: give one of {', '.join(sorted(_FILES))}"
+            f"ground {name!r} is read from a file: give one of {', '.join(known)}"
         )
     if suffix and not colon:
         raise UnknownFormatError(suffix, _FILES, verb="read a ground from")
@@ -224,8 +220,24 @@ def _read_obj(path: Path) -> HeightField:
     return field_from_mesh(*read_obj(path))
 
 
+def _read_toml(path: Path) -> Boxes:
+    return read_boxes(path, _beside)
+
+
+def _beside(text: str, folder: Path) -> Ground:
+    """The ground of words or of a file beside another one."""
+    suffix = Path(text).suffix.lower()
+    if suffix == ".toml":
+        raise InvalidInputError(
+            f"boxes lie on words or on a file of heights, not on {text!r}; put all boxes into one "
+            "file"
+        )
+    return _read_file(folder / text) if suffix in _FILES else read_ground(text)
+
+
 _FILES: dict[str, Callable[[Path], Ground]] = {
     ".npz": _read_npz,
     ".png": _read_png,
     ".obj": _read_obj,
+    ".toml": _read_toml,
 }

@@ -76,10 +76,12 @@ WALKER = "{walker}"
 READERS: dict[str, Reader] = {
     ".amc": _late("amc", "read_amc"),
     ".bvh": _late("bvh_motion", "read_bvh"),
+    ".glb": _late("glb_motion", "read_glb"),
     ".npz": _late("npz", "read_npz"),
 }
 #: Readers of several people by suffix.
 PERFORMANCE_READERS: dict[str, Callable[[Path], Performance]] = {
+    ".glb": _late("glb_motion", "read_glb_performance"),
     ".npz": _late("npz", "read_npz_performance"),
 }
 #: Readers of measured markers by suffix.
@@ -220,7 +222,7 @@ def load(
 
 
 def load_performance(path: str | Path) -> Performance:
-    """Everybody in the file of several people at ``path`` (.npz). Raises as :func:`load` does."""
+    """Everybody in the file of people at ``path`` (.npz, .glb). Raises as :func:`load` does."""
     return _read(Path(path), PERFORMANCE_READERS)
 
 

@@ -175,10 +175,10 @@ def _skeleton(file: BvhFile, factor: float) -> Skeleton:
     for end in reversed(file.ends):  # of several the first counts
         if end.joint not in parents:
             ends[end.joint] = factor * np.array(end.offset)
-    return Skeleton(_different(file.names), file.parents, factor * file.offsets, ends=ends)
+    return Skeleton(different_names(file.names), file.parents, factor * file.offsets, ends=ends)
 
 
-def _different(names: tuple[str, ...]) -> tuple[str, ...]:
+def different_names(names: tuple[str, ...]) -> tuple[str, ...]:
     """The same names, ``_2``, ``_3`` and so on behind those that were there before."""
     taken, count = set(names), dict[str, int]()
     out: list[str] = []

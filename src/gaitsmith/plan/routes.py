@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from gaitsmith.body.bulk import half_width
 from gaitsmith.errors import InfeasibleError
+from gaitsmith.plan.low import FEET, cost_over
 from gaitsmith.plan.paths import Path
 from gaitsmith.plan.ways import NO_WAY, path_through
 
@@ -57,6 +58,9 @@ class Routes:
         Meters that are kept from the thing of this name beyond what its body needs at least.
     walked_round
         Names of posts that hang so high that feet pass below, but are to be walked round.
+    low
+        Names of obstacles that are part of the ground: stepped over or on where that is cheaper
+        than walking round.
     strict
         Refuse goals that leave the walking body less than its room.
     """
@@ -65,6 +69,7 @@ class Routes:
     surroundings: Surroundings
     wider: dict[str, float] = field(default_factory=dict)
     walked_round: frozenset[str] = frozenset()
+    low: frozenset[str] = frozenset()
     strict: bool = False
 
     @property
@@ -77,7 +82,11 @@ class Routes:
         """Outlines of all that is walked round, by name."""
         from shapely import Polygon  # late: most walks have nothing around
 
-        solids = [(o.name, Polygon(o.points)) for o in self.surroundings.obstacles]
+        solids = [
+            (o.name, Polygon(o.points))
+            for o in self.surroundings.obstacles
+            if o.name not in self.low
+        ]
         low = LOW * self.body.height
         for post in self.surroundings.posts:
             if post.bottom < low or post.name in self.walked_round:
@@ -87,7 +96,7 @@ class Routes:
     @property
     def free(self) -> bool:
         """Whether there is nothing to walk round."""
-        return not (self.surroundings.obstacles or self._solids)
+        return not (self._solids or self.low)
 
     # ------------------------------------------------------------------------ asking
 
@@ -107,13 +116,52 @@ class Routes:
 
         As on free ground where that is clear of everything. Else round what stands in the way,
         or None where one path cannot do that: it goes through more than one point. A curve
-        through given points stays what it is.
+        through given points stays what it is. What is low is gone over, or on the way to one
+        point walked round where that is cheaper.
 
         Raises
         ------
         InfeasibleError
             If there is no way; the message says why, and which point can be reached.
         """
+        best, routes = self._path(here, run), self
+        if best is None or len(run) > 1 or len(run[-1][0]) > 1 or run[-1][1]:
+            return best
+        while crossed := routes.crossed(_dense(best)):
+            options = [(best, routes)]
+            for names in {frozenset({name}) for name in crossed} | {crossed}:
+                rounder = replace(routes, low=routes.low - names)
+                try:
+                    other = rounder._path(here, run)
+                except InfeasibleError:
+                    continue
+                if other is not None:
+                    options.append((other, rounder))
+            cheapest = min(options, key=lambda option: option[1]._cost(option[0]))
+            if cheapest[1] is routes:
+                break
+            best, routes = cheapest
+        return best
+
+    def crossed(self, points: Float[np.ndarray, "n 2"]) -> frozenset[str]:
+        """Names of low things that feet come upon on a way through ``points``."""
+        from shapely import LineString, Polygon
+
+        line, feet = LineString(points), FEET * self.body.height
+        return frozenset(
+            one.name
+            for one in self.surroundings.obstacles
+            if one.name in self.low and line.distance(Polygon(one.points)) < feet
+        )
+
+    def _cost(self, path: Path) -> float:
+        """Length of a way, meters, with what its steps over low things are worth."""
+        crossed = self.crossed(_dense(path))
+        over = (cost_over(o) for o in self.surroundings.obstacles if o.name in crossed)
+        return path.length + sum(over)
+
+    def _path(self, here: Float[np.ndarray, "2"], run: Run) -> Path | None:
+        """:meth:`path` over everything low."""
         way = run[-1][0]
         goal = way[-1]
         given = any(soft for _, soft in run)
@@ -279,7 +327,8 @@ def is_blocked(
         return False
     if routes.strict:
         routes.check_goal(here, goal)
-    return not routes.is_clear(np.stack([here, goal]))
+    straight = np.stack([here, goal])
+    return not routes.is_clear(straight) or bool(routes.crossed(straight))
 
 
 def shortest(

@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from gaitsmith._checks import number
 from gaitsmith.errors import InvalidInputError
-from gaitsmith.geometry.solids import segments_apart
+from gaitsmith.geometry.outlines import THINNEST, simple_outline, within
+from gaitsmith.ground.edges import LEAST_JUMP
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-
-    from jaxtyping import Float
 
 Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class Obstacle:
-    """A solid whose outline on the floor is a simple polygon; nobody walks through it.
+    """A solid whose outline on the floor is a simple polygon.
 
     Attributes
     ----------
@@ -30,10 +26,14 @@ class Obstacle:
         x,z of its corners, meters, in either order, three or more.
     name
         What errors call it.
+    height
+        Of its top over the ground below it, meters; None: no end of it matters. What is as low
+        as one step goes is stepped over or on, or walked round, whichever is cheaper.
     """
 
     points: tuple[Point, ...]
     name: str = "obstacle"
+    height: float | None = None
 
 
 @dataclass(frozen=True)
@@ -102,14 +102,18 @@ class Surroundings:
 
     def as_dict(self) -> dict[str, Any]:
         """For recipes: what :func:`read_surroundings` takes."""
-        return {kind: [asdict(one) for one in getattr(self, kind)] for kind in _KINDS}
+        return {
+            kind: [
+                {key: value for key, value in asdict(one).items() if value is not None}
+                for one in getattr(self, kind)
+            ]
+            for kind in _KINDS
+        }
 
 
 _KINDS: dict[str, type] = {"obstacles": Obstacle, "bars": Bar, "posts": Post}
 #: Farthest coordinate and height, meters; most corners of one outline, most of a kind.
 FARTHEST, MOST_CORNERS, MOST = 2000.0, 1000, 1000
-#: Outlines smaller than this (square meters) and things thinner (meters) are none.
-SMALLEST, THINNEST = 1e-6, 1e-4
 
 
 def read_surroundings(given: Surroundings | Mapping[str, Any] | None) -> Surroundings:
@@ -170,52 +174,16 @@ def _named(given: Surroundings, kind: str, check: Callable[[Any], Any]) -> tuple
 
 
 def _obstacle(one: Obstacle) -> Obstacle:
-    try:
-        points = tuple((float(x), float(z)) for x, z in one.points)
-    except (TypeError, ValueError):
-        raise InvalidInputError(
-            f"the corners of {one.name!r} must be points x,z, got {one.points!r}"
-        ) from None
-    for i, (x, z) in enumerate(points, start=1):
-        _within(f"corner {i} of {one.name!r}", x, z)
-    if len(points) > 1 and points[0] == points[-1]:
-        points = points[:-1]
-    if not 3 <= len(points) <= MOST_CORNERS:
-        raise InvalidInputError(
-            f"the outline of {one.name!r} needs 3 to {MOST_CORNERS} corners, got {len(points)}"
-        )
-    corners = np.array(points)
-    following = np.roll(corners, -1, axis=0)
-    area = 0.5 * float((corners[:, 0] * following[:, 1] - corners[:, 1] * following[:, 0]).sum())
-    same = np.flatnonzero(np.abs(corners - following).max(axis=1) < THINNEST)
-    if same.size:
-        x, z = points[int(same[0])]
-        raise InvalidInputError(
-            f"the outline of {one.name!r} has the corner ({x:g}, {z:g}) twice; remove one"
-        )
-    crossing = _crossing(corners)
-    if crossing is not None:
-        raise InvalidInputError(
-            f"the outline of {one.name!r} crosses itself: its sides after corners {crossing[0]} "
-            f"and {crossing[1]} meet; give the corners in order around it"
-        )
-    if abs(area) < SMALLEST:
-        raise InvalidInputError(f"the outline of {one.name!r} encloses nothing; it is a line")
-    return Obstacle(points, one.name)
-
-
-def _crossing(corners: Float[np.ndarray, "n 2"]) -> tuple[int, int] | None:
-    """Two sides of a polygon that meet without being neighbors, counted from 1."""
-    begin, end = corners, np.roll(corners, -1, axis=0)
-    count = len(corners)
-    for i in range(count - 1):
-        others = np.arange(i + 1, count)
-        others = others[(others > i + 1) & ~((i == 0) & (others == count - 1))]
-        if others.size:
-            near = segments_apart(begin[i], end[i], begin[others], end[others])
-            if near.min() < 1e-9:
-                return i + 1, int(others[near.argmin()]) + 1
-    return None
+    points = simple_outline(repr(one.name), one.points, most=MOST_CORNERS, farthest=FARTHEST)
+    height = one.height
+    if height is not None:
+        height = number(f"the height of {one.name!r}", height, "meters")
+        if not LEAST_JUMP <= height <= FARTHEST:
+            raise InvalidInputError(
+                f"the height of {one.name!r} must be from {LEAST_JUMP:g} to {FARTHEST:g} m, got "
+                f"{height:g}; what is lower is not felt underfoot and may be left out"
+            )
+    return Obstacle(points, one.name, height)
 
 
 def _bar(one: Bar) -> Bar:
@@ -227,7 +195,7 @@ def _bar(one: Bar) -> Bar:
             raise InvalidInputError(
                 f"the {what} of {one.name!r} must be a point x,z, got {getattr(one, what)!r}"
             ) from None
-        _within(f"the {what} of {one.name!r}", x, z)
+        within(f"the {what} of {one.name!r}", x, z, FARTHEST)
         ends.append((x, z))
     height = number(f"the height of {one.name!r}", one.height, "meters")
     if not 0.0 < height <= FARTHEST:
@@ -244,7 +212,7 @@ def _post(one: Post) -> Post:
         raise InvalidInputError(
             f"the place of {one.name!r} must be a point x,z, got {one.at!r}"
         ) from None
-    _within(f"the place of {one.name!r}", x, z)
+    within(f"the place of {one.name!r}", x, z, FARTHEST)
     bottom = number(f"the bottom of {one.name!r}", one.bottom, "meters")
     top = number(f"the top of {one.name!r}", one.top, "meters")
     if not 0.0 <= bottom < top <= FARTHEST:
@@ -262,8 +230,3 @@ def _radius(one: Bar | Post) -> float:
             f"the radius of {one.name!r} must be from {THINNEST:g} to 10 m, got {radius:g}"
         )
     return radius
-
-
-def _within(what: str, x: float, z: float) -> None:
-    if not (math.isfinite(x) and math.isfinite(z) and max(abs(x), abs(z)) <= FARTHEST):
-        raise InvalidInputError(f"{what} must be within {FARTHEST:g} m of 0,0, got {x:g},{z:g}")

@@ -6,9 +6,9 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gaitsmith._toml_lines import Place, line_at, lines_of
 from gaitsmith.errors import FileFormatError, GaitsmithError
 from gaitsmith.plan.surroundings import Surroundings
-from gaitsmith.scene.lines import Place, line_at, lines_of
 from gaitsmith.scene.model import Scene, Walker
 
 if TYPE_CHECKING:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import warnings
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from gaitsmith.errors import (
@@ -125,7 +124,7 @@ def _among(surroundings: Surroundings) -> dict[str, Any]:
 
 def _said_of(surroundings: Surroundings) -> dict[str, Any]:
     """What stands around as JSON can hold it; of kinds that there are."""
-    return {kind: things for kind, things in asdict(surroundings).items() if things}
+    return {kind: things for kind, things in surroundings.as_dict().items() if things}
 
 
 def _all_of(problems: list[tuple[str, GaitsmithError]], scene: Scene) -> GaitsmithError:

@@ -19,6 +19,7 @@ from pydantic import (
 )
 
 from gaitsmith.errors import GaitsmithError
+from gaitsmith.ground.edges import LEAST_JUMP
 from gaitsmith.learning import body_of, gait_from
 from gaitsmith.motion.performance import checked_name
 from gaitsmith.plan.manners import gait_of
@@ -102,7 +103,7 @@ def _file(name: str, info: ValidationInfo) -> str:
 
 
 def _ground(value: object, info: ValidationInfo) -> str:
-    if isinstance(value, str) and Path(value).suffix.lower() in (".npz", ".png", ".obj"):
+    if isinstance(value, str) and Path(value).suffix.lower() in (".npz", ".png", ".obj", ".toml"):
         value = _file(value, info)
     return said(checked_ground, value)
 
@@ -110,7 +111,13 @@ def _ground(value: object, info: ValidationInfo) -> str:
 def _body(value: object, info: ValidationInfo) -> Any:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ValueError(f"must be a height in meters, a name or a file, got {value!r}")
-    if isinstance(value, str) and Path(value).suffix.lower() in (".toml", ".bvh", ".amc", ".npz"):
+    if isinstance(value, str) and Path(value).suffix.lower() in (
+        ".toml",
+        ".bvh",
+        ".amc",
+        ".glb",
+        ".npz",
+    ):
         value = _file(value, info)
     return said(body_of, value)
 
@@ -332,11 +339,21 @@ class WalkerTable(Table):
     seed: Annotated[int, Field(ge=0)] | None = None
 
 
+def _felt(value: float) -> float:
+    if value < LEAST_JUMP:
+        raise ValueError(
+            f"must be at least {LEAST_JUMP:g} meters, got {value!r}; what is lower is not felt "
+            "underfoot and may be left out"
+        )
+    return value
+
+
 class ObstacleTable(Table):
     """``[[obstacle]]``: a polygon on the floor."""
 
     points: Points
     name: str = "obstacle"
+    height: Annotated[float, AfterValidator(_felt), Field(le=10.0)] | None = None
 
     @model_validator(mode="after")
     def _simple(self) -> ObstacleTable:
@@ -353,7 +370,7 @@ class ObstacleTable(Table):
 
     def built(self) -> Obstacle:
         """As the package has it."""
-        return Obstacle(tuple(self.points), self.name)
+        return Obstacle(tuple(self.points), self.name, self.height)
 
 
 class BarTable(Table):

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from gaitsmith.errors import InfeasibleError
+from gaitsmith.plan.low import low_obstacles, standing
 from gaitsmith.plan.routes import Routes
 from gaitsmith.plan.surroundings import Obstacle, Post
 from gaitsmith.synthesis.clearance import touches
@@ -39,6 +40,35 @@ def walk_among(
 ) -> PreparedWalk:
     """Plan and prepare a walk that touches nothing of ``surroundings``.
 
+    What is low enough lies in ``ground``: it is stepped over or on, or walked round where that
+    is cheaper or no foot finds a place. See :func:`_walk_past` for the arguments and the rest.
+    """
+    low = frozenset(one.name for one in low_obstacles(surroundings, body))
+    routes = Routes(body, surroundings, low=low)
+    past = standing(surroundings, low)
+    try:
+        return _walk_past(planner, prepare, body, ground, past, routes)
+    except InfeasibleError as over:
+        if not low:
+            raise
+        try:
+            return _walk_past(
+                planner, prepare, body, ground, past, replace(routes, low=frozenset())
+            )
+        except InfeasibleError:
+            raise over from None
+
+
+def _walk_past(
+    planner: Planner,
+    prepare: Callable[[StepPlan | Timeline], PreparedWalk],
+    body: Body,
+    ground: Ground,
+    surroundings: Surroundings,
+    routes: Routes,
+) -> PreparedWalk:
+    """Plan and prepare a walk that touches nothing of ``surroundings``.
+
     Parameters
     ----------
     planner
@@ -49,14 +79,16 @@ def walk_among(
     body, ground
         Who walks, on what.
     surroundings
-        Among what.
+        What may be touched.
+    routes
+        How to get round it.
 
     Raises
     ------
     InfeasibleError
         Naming what would be touched, by what and where.
     """
-    routes, worst = Routes(body, surroundings), None
+    worst = None
     for _ in range(TRIES):
         plan = planner(routes)
         walk = prepare(plan)
@@ -71,7 +103,7 @@ def walk_among(
             if _same(planner(routes), plan):
                 raise
             continue
-        found = [t for t in touches(walk, body, surroundings) if t.gap < APART]
+        found = [t for t in touches(walk, body, ground, surroundings) if t.gap < APART]
         if not found:
             return walk
         worst = min(found, key=lambda touch: touch.gap)
@@ -88,7 +120,7 @@ def walk_among(
             refused = error
         # there is no more room: perhaps it is enough to hold an arm in
         held = dodged(free, body, ground, surroundings, obstacles=True)
-        if all(t.gap >= APART for t in touches(held, body, surroundings)):
+        if all(t.gap >= APART for t in touches(held, body, ground, surroundings)):
             return held
         if refused is not None:
             raise refused

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from gaitsmith.body.body import Body
     from gaitsmith.contact import Poses
+    from gaitsmith.ground import Ground
     from gaitsmith.plan.surroundings import Bar, Obstacle, Post, Surroundings
     from gaitsmith.synthesis.step import PreparedWalk
 
@@ -47,8 +48,8 @@ class Touch:
 class Watch:
     """The capsules of a body over its poses, and their distances from things."""
 
-    def __init__(self, body: Body) -> None:
-        self.body = body
+    def __init__(self, body: Body, ground: Ground) -> None:
+        self.body, self.ground = body, ground
         self.bulk: Bulk = bulk_of(body)
         self.skeleton = skeleton_of(body)
 
@@ -64,10 +65,29 @@ class Watch:
         a, b = axes[:, :, 0], axes[:, :, 1]
         corners = getattr(thing, "points", None)
         if corners is not None:
-            flat = [p[..., [0, 2]] for p in (a, b)]
-            return polygon_apart(flat[0], flat[1], np.array(corners)) - self.bulk.radius
+            return self._from_outline(a, b, np.array(corners), getattr(thing, "height", None))
         begin, end, radius = rod(thing)  # type: ignore[arg-type]
         return segments_apart(a, b, begin, end) - radius - self.bulk.radius
+
+    def _from_outline(
+        self,
+        a: Float[np.ndarray, "F K 3"],
+        b: Float[np.ndarray, "F K 3"],
+        corners: Float[np.ndarray, "m 2"],
+        top: float | None,
+    ) -> Float[np.ndarray, "F K"]:
+        """Distances of capsules from a solid up to a height over the ground, at least these."""
+        flat, radius = [0, 2], self.bulk.radius
+        if top is None:
+            return polygon_apart(a[..., flat], b[..., flat], corners) - radius
+        a_over, b_over = (p[..., 1] - self.ground.height(p[..., 0], p[..., 2]) for p in (a, b))
+        swap = a_over > b_over
+        foot, head = np.where(swap[..., None], b, a), np.where(swap[..., None], a, b)
+        rise = np.maximum(np.abs(a_over - b_over), 1e-12)
+        over = np.minimum(a_over, b_over) - top - radius
+        share = np.where(over > 0.0, 1.0, np.clip(-over / rise, 0.0, 1.0))[..., None]
+        low = foot + share * (head - foot)  # what is higher touches nothing
+        return np.maximum(polygon_apart(foot[..., flat], low[..., flat], corners) - radius, over)
 
 
 def rod(
@@ -110,9 +130,11 @@ def near(root: Float[np.ndarray, "F 3"], thing: Thing, reach: float) -> Int[np.n
     return np.flatnonzero(away < reach)
 
 
-def touches(walk: PreparedWalk, body: Body, surroundings: Surroundings) -> list[Touch]:
+def touches(
+    walk: PreparedWalk, body: Body, ground: Ground, surroundings: Surroundings
+) -> list[Touch]:
     """What the walk comes nearest to, the worst of every thing that it comes near at all."""
-    watch, reach = Watch(body), REACH * body.height
+    watch, reach = Watch(body, ground), REACH * body.height
     count = int(np.ceil(walk.duration * CLOSE_LOOKS)) + 1
     times = np.minimum(np.arange(count) / CLOSE_LOOKS, walk.duration)
     things = (*surroundings.obstacles, *surroundings.bars, *surroundings.posts)

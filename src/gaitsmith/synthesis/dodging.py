@@ -112,7 +112,7 @@ def dodged(
         clear += [NEARLY] * len(surroundings.obstacles)
     if not things:
         return walk
-    dodger, least = _Dodger(walk, body), np.array(clear)
+    dodger, least = _Dodger(walk, body, ground), np.array(clear)
     aims = least + AIM
     worst, gaps = 0, np.zeros(len(things))
     for _ in range(TRIES):
@@ -137,8 +137,8 @@ def dodged(
 class _Dodger:
     """What a walk needs to get past things."""
 
-    def __init__(self, walk: PreparedWalk, body: Body) -> None:
-        self._walk, self._body, self._watch = walk, body, Watch(body)
+    def __init__(self, walk: PreparedWalk, body: Body, ground: Ground) -> None:
+        self._walk, self._body, self._watch = walk, body, Watch(body, ground)
         end = float(walk.clock.starts[-1])
         self._times = np.linspace(0.0, end, max(int(np.ceil(end * LOOKS)) + 1, 3))
         self._poses = walk.poses(self._times)

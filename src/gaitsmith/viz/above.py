@@ -16,6 +16,7 @@ from gaitsmith.viz.canvas import Area, nice_step, pairs
 if TYPE_CHECKING:
     from jaxtyping import Float
 
+    from gaitsmith.ground import Ground
     from gaitsmith.viz.canvas import Canvas
     from gaitsmith.viz.tracks import Tracks
 
@@ -120,7 +121,7 @@ def map_panel(canvas: Canvas, tracks: Tracks, area: Area) -> None:
     canvas.box(area.left, area.top, area.right, area.bottom - 20.0, palette.PANEL)
     start = tracks.motion.root_position[0]
     floor_grid(canvas, to, area, start)
-    _map_edges(canvas, tracks, to, area)
+    draw_edges(canvas, tracks.surface, to, area)
     inside = Area(area.left, area.top, area.right, area.bottom - 20.0)
     draw_on_map(canvas, tracks.around, to, scale, inside)
     labels = tracks.motion.labels
@@ -157,14 +158,14 @@ def _arrow(canvas: Canvas, tracks: Tracks, to: FloorMap) -> None:
     canvas.polygon(to(tip), palette.PELVIS_LINE)
 
 
-def _map_edges(canvas: Canvas, tracks: Tracks, to: FloorMap, area: Area) -> None:
-    """Risers and other edges of the ground."""
-    if not tracks.surface.stepped:
+def draw_edges(canvas: Canvas, surface: Ground, to: FloorMap, area: Area) -> None:
+    """Risers and other edges of the ground in a map."""
+    if not surface.stepped:
         return
     half = 0.5 * np.array([area.width, area.height - 20.0]) / to.scale
     corners = np.array([u * half[0] * to.right + v * half[1] * to.up for u in _ENDS for v in _ENDS])
     box = (to.origin + corners)[:, [0, 2]]
-    edges = tracks.surface.edges(tuple(box.min(axis=0).tolist()), tuple(box.max(axis=0).tolist()))
+    edges = surface.edges(tuple(box.min(axis=0).tolist()), tuple(box.max(axis=0).tolist()))
     inside = Area(area.left, area.top, area.right, area.bottom - 20.0)
     for ends in np.stack([edges.begin, edges.end], axis=1):
         line = np.insert(ends, 1, 0.0, axis=1)
@@ -191,7 +192,7 @@ def floor_grid(
         x = x0 + k * step * to.scale
         if area.left - 0.5 <= x <= area.right + 0.5:
             canvas.line([(x, area.top), (x, bottom)], palette.GRID)
-            if area.left + 6 <= x <= area.right - 6 * len(unit):
+            if area.left + 6 <= x <= area.right - 6 - 7 * len(unit):
                 canvas.text(x, area.bottom - 4, f"{k * step:g}", size=12, anchor="ms")
         y = y0 - k * step * to.scale
         if area.top <= y <= bottom:

@@ -11,10 +11,11 @@ from gaitsmith._checks import positive
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.viz import palette
 from gaitsmith.viz.above import footprints
-from gaitsmith.viz.around import draw_floor, draw_rods
+from gaitsmith.viz.around import draw_posts, draw_rods
 from gaitsmith.viz.render import Camera, camera, draw_figure
 from gaitsmith.viz.shadows import ELEVATION as _ELEVATION
 from gaitsmith.viz.shadows import draw_prints, draw_shadow
+from gaitsmith.viz.terrain import draw_land, draw_solids, hiding
 from gaitsmith.viz.tracks import smooth, tracks_of
 
 if TYPE_CHECKING:
@@ -167,17 +168,22 @@ class _Scene:
             elevation=_ELEVATION,
         )
         image = self.floor.copy()
-        if self.tracks.is_level:
+        tracks, land = self.tracks, self.tracks.land
+        if land.is_level:
             self._grid(image, view)
         else:
             self._terrain(image, view)
-        tracks = self.tracks
-        draw_floor(image, tracks.around, view)
-        draw_prints(image, tracks, self.prints, frame, view, reach=1.3 * tracks.stature)
-        draw_shadow(image, tracks, frame, view)
+        draw_posts(image, tracks.around, view, land.base)
+        if land.solids:
+            draw_solids(image, land, view, wide=_FINE)
+        hidden = hiding(land, view, self.large)
+        reach = 1.3 * tracks.stature
+        draw_prints(image, tracks, self.prints, frame, view, reach=reach, hidden=hidden)
+        draw_shadow(image, tracks, frame, view, hidden)
         place = tracks.motion.root_position[frame]
         draw_rods(image, tracks.around, view, place, tracks.stature, front=False)
-        draw_figure(image, tracks.figure, tracks.positions[frame], tracks.world[frame], view)
+        depth = None if hidden is None else hidden.depth
+        draw_figure(image, tracks.figure, tracks.positions[frame], tracks.world[frame], view, depth)
         draw_rods(image, tracks.around, view, place, tracks.stature, front=True)
         return image.reduce(_FINE)
 
@@ -194,7 +200,7 @@ class _Scene:
             ):
                 points = np.empty((len(run), 3))
                 points[:, axis], points[:, 2 - axis] = k * _CELL, run
-                points[:, 1] = self.tracks.ground(points[:, 0], points[:, 2])
+                points[:, 1] = self.tracks.land.base.height(points[:, 0], points[:, 2])
                 lines.append(points)
         box = self.fading.getbbox()
         if box is None:
@@ -208,23 +214,8 @@ class _Scene:
         image.paste(palette.GRID_DARK, box[:2], ImageChops.multiply(mask, fading))
 
     def _terrain(self, image: Image.Image, view: Camera) -> None:
-        """Slopes and steps as shaded cells, the far ones first."""
-        x, z = self.tracks.ground_lines(view.target, _REACH * self.tracks.stature)
-        points = np.empty((len(z), len(x), 3))
-        points[..., 0], points[..., 2] = x[None], z[:, None]
-        points[..., 1] = self.tracks.ground(points[..., 0], points[..., 2])
-        cells = np.stack(
-            [points[:-1, :-1], points[:-1, 1:], points[1:, 1:], points[1:, :-1]], axis=2
-        )
-        cells = cells.reshape(-1, 4, 3)
-        normal = np.cross(cells[:, 2] - cells[:, 0], cells[:, 1] - cells[:, 3])
-        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-        share = 0.75 * np.clip(1.0 - np.abs(normal[:, 1]) ** 4, 0.0, 1.0)
-        flat = view.project(cells)
+        """Slopes and steps as shaded cells."""
+        reach, at = _REACH * self.tracks.stature, view.target[[0, 2]]
         layer = self.floor.copy()
-        pen = ImageDraw.Draw(layer)
-        edge = palette.GRID_DARK if len(x) < 40 else None
-        for k in np.argsort(flat[..., 2].mean(axis=1), kind="stable").tolist():
-            fill = palette.mix(palette.FLOOR, palette.GRID_DARK, float(share[k]))
-            pen.polygon(flat[k, :, :2].ravel().tolist(), fill=fill, outline=edge)
+        draw_land(layer, self.tracks.land, view, at - reach, at + reach, wide=_FINE)
         image.paste(layer, (0, 0), self.fading)

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from jaxtyping import Float
     from PIL import Image
 
+    from gaitsmith.ground import Ground
     from gaitsmith.motion.motion import Motion
+    from gaitsmith.plan.surroundings import Post
     from gaitsmith.viz.canvas import Area, Canvas
     from gaitsmith.viz.render import Camera
 
@@ -43,9 +45,13 @@ def surroundings_of(motion: Motion) -> Surroundings:
 def outlines(around: Surroundings) -> list[Float[np.ndarray, "n 3"]]:
     """World outlines on the floor of obstacles and posts, meters."""
     found = [_on_floor(np.array(o.points)) for o in around.obstacles]
+    return found + [_circle(post) for post in around.posts]
+
+
+def _circle(post: Post) -> Float[np.ndarray, "24 3"]:
     turn = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
     circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    return found + [_on_floor(np.array(p.at) + p.radius * circle) for p in around.posts]
+    return _on_floor(np.array(post.at) + post.radius * circle)
 
 
 def rods(around: Surroundings, top: float) -> list[tuple[Float[np.ndarray, "2 3"], float]]:
@@ -90,10 +96,12 @@ def draw_on_map(
             canvas.line([(float(x), float(y)) for x, y in seen.coords], palette.SOLID_EDGE, width)
 
 
-def draw_floor(image: Image.Image, around: Surroundings, view: Camera) -> None:
-    """The outlines on the floor."""
+def draw_posts(image: Image.Image, around: Surroundings, view: Camera, ground: Ground) -> None:
+    """The outlines of posts on the ground."""
     pen = ImageDraw.Draw(image)
-    for outline in outlines(around):
+    for post in around.posts:
+        outline = _circle(post)
+        outline[:, 1] = ground.height(outline[:, 0], outline[:, 2])
         points = view.project(outline)[:, :2].ravel().tolist()
         pen.polygon(points, fill=palette.SOLID, outline=palette.SOLID_EDGE)
 

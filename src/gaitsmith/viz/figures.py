@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaitsmith.conventions import ahead, leftward
+from gaitsmith.ground import Flat
 from gaitsmith.viz import palette
 from gaitsmith.viz.around import BESIDE, draw_rods
 from gaitsmith.viz.canvas import Area, pairs
@@ -29,16 +30,14 @@ def figure_row(
     """The figures of ``frames`` side by side, each seen along its own heading, on the ground."""
     column = area.width / len(frames)
     stature = tracks.stature
-    scale = (area.height - 26.0) / (1.03 * stature)
-    level = area.bottom - 18.0
+    over, under = _room(tracks, frames)
+    scale = (area.height - 26.0) / (1.03 * stature + over + under)
+    level = area.bottom - 18.0 - scale * under
     canvas.box(area.left, level, area.right, area.bottom, palette.FLOOR)
     for k, frame in enumerate(frames.tolist()):
         middle = area.left + (k + 0.5) * column
         heading = float(tracks.heading[frame])
-        target = tracks.motion.root_position[frame].copy()
-        if view != "front":  # the pelvis may sway out of the column's middle only sideways
-            target += 0.02 * stature * ahead(heading)
-        target[1] = float(tracks.ground(target[0], target[2]))
+        target = _target(tracks, frame, view)
         _ground_under(
             canvas,
             tracks,
@@ -61,6 +60,37 @@ def figure_row(
         draw_figure(canvas.image, tracks.figure, tracks.positions[frame], tracks.world[frame], seen)
         draw_rods(canvas.image, around, seen, place, stature, front=True, near=BESIDE)
     canvas.line([(area.left, area.bottom), (area.right, area.bottom)], palette.FLOOR)
+
+
+def row_height(tracks: Tracks, frames: Int[np.ndarray, "n"], level: float) -> float:
+    """Pixels that a row wants which on level ground is ``level`` high, at the same scale."""
+    return level + (level - 26.0) / (1.03 * tracks.stature) * sum(_room(tracks, frames))
+
+
+def _room(tracks: Tracks, frames: Int[np.ndarray, "n"]) -> tuple[float, float]:
+    """Meters that figures rise over a stature, and that feet stand below the ground at the hips.
+
+    None on level ground.
+    """
+    if isinstance(tracks.surface, Flat):
+        return 0.0, 0.0
+    over = under = 0.0
+    for frame in frames.tolist():
+        height = tracks.figure.pose(tracks.positions[frame], tracks.world[frame])[0][:, 1]
+        for view in ("right", "front"):
+            level = _target(tracks, frame, view)[1]
+            over = max(over, float(height.max() - level) - 1.03 * tracks.stature)
+            under = max(under, float(level - height.min()))
+    return over, under
+
+
+def _target(tracks: Tracks, frame: int, view: str) -> Float[np.ndarray, "3"]:
+    """World point on the ground that is drawn in the middle of a column, meters."""
+    target = tracks.motion.root_position[frame].copy()
+    if view != "front":  # the pelvis may sway out of the column's middle only sideways
+        target += 0.02 * tracks.stature * ahead(float(tracks.heading[frame]))
+    target[1] = float(tracks.ground(target[0], target[2]))
+    return target
 
 
 def _ground_under(

@@ -29,8 +29,9 @@ PEOPLE: tuple[Color, ...] = (
     (30, 134, 144),
     (176, 58, 106),
 )
-#: What stands around: filling and edge.
+#: What stands around: filling, that of its sides, and edge.
 SOLID: Color = (214, 207, 194)
+SOLID_SIDE: Color = (190, 181, 165)
 SOLID_EDGE: Color = (158, 148, 130)
 PATH_LINE: Color = (140, 144, 150)
 PELVIS_LINE: Color = (96, 74, 52)

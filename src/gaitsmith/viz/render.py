@@ -140,6 +140,17 @@ class Fragments:
     weights: Float[np.ndarray, "n 3"]
     depth: Float[np.ndarray, "n"]
 
+    def before(self, hidden: Float[np.ndarray, "rows columns"], nearer: float) -> Fragments | None:
+        """Those in front of ``hidden``, which is the picture's, or less than ``nearer`` behind."""
+        left, top, width, _ = self.box
+        rows, columns = np.divmod(self.pixel, width)
+        kept = self.depth > hidden[rows + top, columns + left] - nearer
+        if not kept.any():
+            return None
+        return Fragments(
+            self.box, self.pixel[kept], self.face[kept], self.weights[kept], self.depth[kept]
+        )
+
 
 def rasterize(corners: Float[np.ndarray, "faces 3 3"], size: tuple[int, int]) -> Fragments | None:
     """Nearest front face at every pixel of a picture of ``size``; None if nothing is seen.
@@ -215,6 +226,7 @@ def draw_figure(
     positions: Float[np.ndarray, "joints 3"],
     world: Float[np.ndarray, "joints 4"],
     view: Camera,
+    hidden: Float[np.ndarray, "rows columns"] | None = None,
 ) -> None:
     """Draw ``figure`` in one pose into an RGB ``image``.
 
@@ -228,9 +240,13 @@ def draw_figure(
         World positions (meters) and rotations of the joints of one frame.
     view
         The camera.
+    hidden
+        Meters toward the viewer of what hides the figure, at every pixel; None: nothing does.
     """
     vertices, normals = figure.pose(positions, world)
     seen = rasterize(view.project(vertices)[figure.faces], image.size)
+    if seen is not None and hidden is not None:
+        seen = seen.before(hidden, 0.012 * figure.stature)
     if seen is None:
         return
     # light is worked out at vertices: there are fewer of them than pixels, and triangles are small

@@ -9,9 +9,9 @@ import numpy as np
 
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.viz import palette
-from gaitsmith.viz.above import FloorMap, floor_grid, footprints
+from gaitsmith.viz.above import FloorMap, draw_edges, floor_grid, footprints
 from gaitsmith.viz.canvas import Area, Canvas
-from gaitsmith.viz.figures import figure_row
+from gaitsmith.viz.figures import figure_row, row_height
 from gaitsmith.viz.stage import Stage
 from gaitsmith.viz.tracks import stride_frames
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from gaitsmith.motion.motion import Motion
     from gaitsmith.motion.performance import Performance
     from gaitsmith.skin.palette import Color
+    from gaitsmith.viz.terrain import Land
     from gaitsmith.viz.tracks import Tracks
 
 _MARGIN, _HEADER, _CAPTION, _GAP = 40, 92, 26, 22
@@ -60,9 +61,13 @@ def scene_sheet(performance: Performance, path: str | Path, *, width: int = 1600
     left, right = float(_MARGIN), float(width - _MARGIN)
     moment = int((right - left - (_MOMENTS - 1) * 16) / _MOMENTS)
     stage = Stage(performance, moment)
-    floor = _Floor(performance, stage.tracks, right - left)
+    floor = _Floor(performance, stage.tracks, stage.land, right - left)
     tallest = max(tracks.stature for tracks in stage.tracks)
-    rows = [_ROW * tracks.stature / tallest + 26.0 for tracks in stage.tracks]
+    strides = [_longest_stride(tracks.motion) for tracks in stage.tracks]
+    rows = [
+        row_height(tracks, frames, _ROW * tracks.stature / tallest + 26.0)
+        for tracks, (frames, _) in zip(stage.tracks, strides, strict=True)
+    ]
     total = _HEADER + 2 * (_CAPTION + _GAP) + stage.size[1] + floor.height
     total += sum(rows) + len(rows) * (_CAPTION + _GAP)
     canvas = Canvas(width, round(total))
@@ -78,7 +83,7 @@ def scene_sheet(performance: Performance, path: str | Path, *, width: int = 1600
     floor.draw(canvas, Area(left, top, right, top + floor.height))
     top += floor.height + _GAP + _CAPTION
     for i, (name, tracks) in enumerate(zip(performance.names, stage.tracks, strict=True)):
-        frames, stride = _longest_stride(tracks.motion)
+        frames, stride = strides[i]
         span = "the longest stride" if stride else "the whole motion"
         canvas.text(left, top - 8, name, color=_color(i), size=14)
         words = f"{tracks.stature:.2f} m, from the right, {span}"
@@ -133,11 +138,14 @@ def _header(canvas: Canvas, performance: Performance, people: list[Tracks]) -> N
 class _Floor:
     """Everybody's footprints and ways from above, on the axes of the world."""
 
-    def __init__(self, performance: Performance, people: list[Tracks], width: float) -> None:
+    def __init__(
+        self, performance: Performance, people: list[Tracks], land: Land, width: float
+    ) -> None:
         self.names, self.people, self.width = performance.names, people, width
+        self.ground = land.base
         self.prints = [footprints(tracks) for tracks in people]
         around = json.loads(performance.surroundings)
-        self.solids = [np.array(item["points"]) for item in around.get("obstacles", ())]
+        self.solids = [solid.corners for solid in land.solids]
         self.bars = [np.array([b["begin"], b["end"]]) for b in around.get("bars", ())]
         self.posts = [(np.array(p["at"]), p["radius"]) for p in around.get("posts", ())]
         points = [tracks.motion.root_position[:, [0, 2]] for tracks in people]
@@ -160,6 +168,7 @@ class _Floor:
         to = FloorMap(_floor(middle[None])[0], right, up, self.scale, center)
         canvas.box(area.left, area.top, area.right, area.bottom - 20.0, palette.PANEL)
         floor_grid(canvas, to, area, np.zeros(3), unit="m of x" if self.turned else "m of z")
+        draw_edges(canvas, self.ground, to, area)
         for shape in self.solids:
             canvas.polygon(to(_floor(shape)), palette.SOLID, palette.SOLID_EDGE)
         for at, radius in self.posts:

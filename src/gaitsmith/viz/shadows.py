@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
     from gaitsmith.viz.render import Camera
+    from gaitsmith.viz.terrain import Hiding
     from gaitsmith.viz.tracks import Tracks
 
 #: How far the camera of an animation looks down, radians.
@@ -31,12 +32,15 @@ def draw_prints(
     view: Camera,
     *,
     reach: float,
+    hidden: Hiding | None = None,
 ) -> None:
     """Prints of the feet that have landed by now, fading ``reach`` meters from the middle."""
     now, labels = frame / tracks.motion.fps, tracks.motion.labels
     pen = ImageDraw.Draw(image)
     for k, (side, shape) in enumerate(prints):
         if labels is not None and labels.footstep_time[k] > now + 1e-9:
+            continue
+        if hidden is not None and hidden.hides(shape.mean(axis=0)):
             continue
         away = float(np.linalg.norm((shape.mean(axis=0) - view.target)[[0, 2]]))
         share = 0.34 * np.clip(1.25 - away / reach, 0.0, 1.0)
@@ -45,7 +49,9 @@ def draw_prints(
             pen.polygon(view.project(shape)[:, :2].ravel().tolist(), fill=tint)
 
 
-def draw_shadow(image: Image.Image, tracks: Tracks, frame: int, view: Camera) -> None:
+def draw_shadow(
+    image: Image.Image, tracks: Tracks, frame: int, view: Camera, hidden: Hiding | None = None
+) -> None:
     """The figure's own shape on the ground, soft, and darker where the feet bear."""
     vertices, _ = tracks.figure.pose(tracks.positions[frame], tracks.world[frame])
     level = np.array([view.axes[2, 0], 0.0, view.axes[2, 2]])
@@ -55,6 +61,8 @@ def draw_shadow(image: Image.Image, tracks: Tracks, frame: int, view: Camera) ->
     a, b, c = (vertices[corner] for corner in tracks.figure.faces.T)
     points = np.concatenate([vertices, (a + b + c) / 3.0])
     fallen = points - ((points[:, 1] - ground) / sun[1])[:, None] * sun
+    if hidden is not None:
+        fallen = fallen[~hidden.hides(fallen)]
     # a coarse picture of dots, grown until they meet: it is blurred anyway
     wide, high = (size // COARSE for size in image.size)
     x, y = (view.project(fallen)[:, :2] / COARSE).astype(np.int64).T
@@ -69,25 +77,29 @@ def draw_shadow(image: Image.Image, tracks: Tracks, frame: int, view: Camera) ->
         left, top, right, bottom = (COARSE * edge for edge in box)
         shadow = mask.crop(box).resize((right - left, bottom - top), Image.Resampling.BILINEAR)
         image.paste(palette.SHADOW, (left, top), shadow)
-    _contact(image, tracks, frame, view)
+    _contact(image, tracks, frame, view, hidden)
 
 
-def _contact(image: Image.Image, tracks: Tracks, frame: int, view: Camera) -> None:
+def _contact(
+    image: Image.Image, tracks: Tracks, frame: int, view: Camera, hidden: Hiding | None
+) -> None:
     """A dark soft patch under each shoe, which goes as the shoe lifts."""
     if tracks.soles is None:
         return
     mask = Image.new("L", image.size, 0)
     pen = ImageDraw.Draw(mask)
-    for side in (0, 1):
-        points = tracks.soles[frame, side].copy()
-        ground = tracks.ground(points[:, 0], points[:, 2])
-        above = np.clip((points[:, 1] - ground) / (0.05 * tracks.stature), 0.0, 1.0)
-        points[:, 1] = ground
-        wide = 0.05 * tracks.stature * view.scale
-        for (x, y), fade in zip(view.project(points)[:, :2].tolist(), above.tolist(), strict=True):
-            tall = wide * np.sin(ELEVATION) * 1.6
-            fill = round(130 * (1.0 - fade) ** 2)
-            pen.ellipse((x - wide, y - tall, x + wide, y + tall), fill=fill)
+    points = tracks.soles[frame].reshape(-1, 3).copy()
+    ground = tracks.ground(points[:, 0], points[:, 2])
+    above = np.clip((points[:, 1] - ground) / (0.05 * tracks.stature), 0.0, 1.0)
+    points[:, 1] = ground
+    if hidden is not None:
+        above[hidden.hides(points)] = 1.0
+    wide = 0.05 * tracks.stature * view.scale
+    tall = wide * np.sin(ELEVATION) * 1.6
+    shown = view.project(points)
+    for k in np.argsort(-above, kind="stable").tolist():  # the darkest on top
+        (x, y), fill = shown[k, :2].tolist(), round(130 * (1.0 - above[k]) ** 2)
+        pen.ellipse((x - wide, y - tall, x + wide, y + tall), fill=fill)
     box = mask.getbbox()
     if box is None:
         return

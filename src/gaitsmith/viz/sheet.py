@@ -11,7 +11,7 @@ from gaitsmith.skin.palette import SIDE_LIMBS
 from gaitsmith.viz import palette
 from gaitsmith.viz.above import map_height, map_panel
 from gaitsmith.viz.canvas import Area, Canvas
-from gaitsmith.viz.figures import column_notes, figure_row
+from gaitsmith.viz.figures import column_notes, figure_row, row_height
 from gaitsmith.viz.strips import angle_panel, stick_height, stick_panel, sticks_of
 from gaitsmith.viz.tracks import stride_frames, tracks_of
 
@@ -66,10 +66,15 @@ def contact_sheet(
             )
     tracks = tracks_of(motion)
     unit = (width - 2 * _MARGIN) / 1520.0
+    frames, _ = stride_frames(tracks.motion, phases)
+    # figures of a row may just touch when they take long steps
+    side, front = (
+        min(1.03 * 190.0 * (8.0 / phases) / share, most) * unit + 26.0
+        for share, most in ((0.60, 460.0), (0.62, 300.0))
+    )
     heights = {
-        # figures of a row may just touch when they take long steps
-        "side": min(1.03 * 190.0 * (8.0 / phases) / 0.60, 460.0) * unit + 26.0,
-        "front": min(1.03 * 190.0 * (8.0 / phases) / 0.62, 300.0) * unit + 26.0,
+        "side": row_height(tracks, frames, side),
+        "front": row_height(tracks, frames, front),
         "map": map_height(tracks, width - 2 * _MARGIN, 150.0 * unit, 420.0 * unit),
         "sticks": stick_height(sticks_of(tracks), width - 2.0 * _MARGIN, 270.0 * unit),
         "angles": 210.0 * unit,

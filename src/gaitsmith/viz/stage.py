@@ -10,12 +10,14 @@ from PIL import Image, ImageChops, ImageDraw, ImageFilter
 
 from gaitsmith.conventions import ahead
 from gaitsmith.errors import InvalidInputError
+from gaitsmith.plan.surroundings import read_surroundings
 from gaitsmith.viz import palette
 from gaitsmith.viz.above import footprints
 from gaitsmith.viz.animation import delay_of, write_pictures
 from gaitsmith.viz.canvas import font
 from gaitsmith.viz.render import camera, draw_figure
 from gaitsmith.viz.shadows import ELEVATION, draw_prints, draw_shadow
+from gaitsmith.viz.terrain import Land, draw_land, draw_solids, hiding
 from gaitsmith.viz.tracks import tracks_of
 
 if TYPE_CHECKING:
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
 _FLATTEST, _TALLEST = 0.42, 0.9
 #: Meters of floor around all that people reach; the grid's cell.
 _AROUND, _CELL = 0.45, 0.5
+#: Meters of uneven ground that are drawn beyond: it fades.
+_BEYOND = 4.0
 _FINE = 2
 #: Frames that are looked at to see how far people reach.
 _LOOKED = 60
@@ -75,8 +79,12 @@ class Stage:
         self.tracks = [tracks_of(motion) for motion in performance.motions]
         self.prints = [footprints(tracks) for tracks in self.tracks]
         self.around: dict[str, Any] = json.loads(performance.surroundings)
-        points = np.concatenate([*map(_reached, self.tracks), *_corners(self.around)])
-        self.floor_points = points * [1.0, 0.0, 1.0]
+        self.land = _land(self.tracks, self.around)
+        around = [ends for ends, _ in _rods(self.around)]
+        around += [rim for solid in self.land.solids for rim in (solid.outline, solid.top)]
+        points = np.concatenate([*map(_reached, self.tracks), *around])
+        self.floor_points = points.copy()
+        self.floor_points[:, 1] = self.land.base.height(points[:, 0], points[:, 2])
         heading = self._heading()
         target = 0.5 * (points.min(axis=0) + points.max(axis=0)) * [1.0, 0.0, 1.0]
         plain = camera(
@@ -107,6 +115,16 @@ class Stage:
         )
         self.reach = 10.0 * float(np.ptp(self.floor_points, axis=0).max() + 1.0)
         self.floor = self._backdrop()
+        low, high = self._corners()
+        # steps hide what is behind them; smooth ground hardly ever does
+        steps = self.land.base.stepped
+        cells = self.land.cells(*self.land.lines(low, high)) if steps else ()
+        self.hidden = hiding(self.land, self.view, self.large, cells)
+
+    def _corners(self) -> tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]:
+        """Corners x,z of the ground that is drawn."""
+        flat = self.floor_points[:, [0, 2]]
+        return flat.min(axis=0) - _BEYOND, flat.max(axis=0) + _BEYOND
 
     def _heading(self) -> float:
         """What points to the right of the picture: the long way, people rather facing us."""
@@ -133,6 +151,17 @@ class Stage:
         mask = mask.resize(self.large, Image.Resampling.BILINEAR)
         image = Image.new("RGB", self.large, palette.PAPER)
         image.paste(palette.FLOOR, (0, 0), mask)
+        if self.land.is_level:
+            self._grid(image, mask)
+        else:
+            ground = Image.new("RGB", self.large, palette.PAPER)
+            draw_land(ground, self.land, self.view, *self._corners(), wide=_FINE)
+            image.paste(ground, (0, 0), mask)
+        draw_solids(image, self.land, self.view, wide=2 * _FINE)
+        return image
+
+    def _grid(self, image: Image.Image, mask: Image.Image) -> None:
+        """Lines on level ground."""
         lines = Image.new("L", self.large, 0)
         pen = ImageDraw.Draw(lines)
         low, high = self.floor_points.min(axis=0) - 3.0, self.floor_points.max(axis=0) + 3.0
@@ -140,23 +169,17 @@ class Stage:
             for k in range(int(np.ceil(low[axis] / _CELL)), int(high[axis] / _CELL) + 1):
                 ends = np.zeros((2, 3))
                 ends[:, axis], ends[:, 2 - axis] = k * _CELL, (low[2 - axis], high[2 - axis])
+                ends[:, 1] = low[1] + 3.0
                 pen.line(self.view.project(ends)[:, :2].ravel().tolist(), fill=255, width=_FINE)
         image.paste(palette.GRID_DARK, (0, 0), ImageChops.multiply(lines, mask))
-        pen = ImageDraw.Draw(image)
-        for item in self.around.get("obstacles", ()):
-            outline = self.view.project(_on_floor(item["points"]))[:, :2]
-            pen.polygon(outline.ravel().tolist(), fill=palette.SOLID)
-            ends = [*outline.ravel().tolist(), *outline[0].tolist()]
-            pen.line(ends, fill=palette.SOLID_EDGE, width=2 * _FINE, joint="curve")
-        return image
 
     def draw(self, frame: int) -> Image.Image:
         """The finished RGB picture of one frame."""
         image, view = self.floor.copy(), self.view
         for tracks, prints in zip(self.tracks, self.prints, strict=True):
-            draw_prints(image, tracks, prints, frame, view, reach=self.reach)
+            draw_prints(image, tracks, prints, frame, view, reach=self.reach, hidden=self.hidden)
         for tracks in self.tracks:
-            draw_shadow(image, tracks, frame, view)
+            draw_shadow(image, tracks, frame, view, self.hidden)
         things: list[tuple[float, Callable[[], None]]] = [
             (self._depth(tracks.positions[frame, 0]), self._person(image, tracks, frame))
             for tracks in self.tracks
@@ -177,7 +200,8 @@ class Stage:
 
     def _person(self, image: Image.Image, tracks: Tracks, frame: int) -> Callable[[], None]:
         positions, world = tracks.positions[frame], tracks.world[frame]
-        return lambda: draw_figure(image, tracks.figure, positions, world, self.view)
+        depth = None if self.hidden is None else self.hidden.depth
+        return lambda: draw_figure(image, tracks.figure, positions, world, self.view, depth)
 
     def _rod(
         self, image: Image.Image, ends: Float[np.ndarray, "2 3"], radius: float
@@ -228,9 +252,11 @@ def _reached(tracks: Tracks) -> Float[np.ndarray, "n 3"]:
     return np.concatenate([low, high])
 
 
-def _on_floor(points: list[list[float]]) -> Float[np.ndarray, "n 3"]:
-    flat = np.array(points, dtype=np.float64)
-    return np.stack([flat[:, 0], np.zeros(len(flat)), flat[:, 1]], axis=-1)
+def _land(people: list[Tracks], around: dict[str, Any]) -> Land:
+    """The ground of everybody: what is low to the tallest is on it, and all that is higher."""
+    tallest = max(people, key=lambda tracks: tracks.stature)
+    things = read_surroundings({"obstacles": around.get("obstacles", ())})
+    return Land.of(tallest.surface, things.obstacles)
 
 
 def _rods(around: dict[str, Any]) -> list[tuple[Float[np.ndarray, "2 3"], float]]:
@@ -244,9 +270,3 @@ def _rods(around: dict[str, Any]) -> list[tuple[Float[np.ndarray, "2 3"], float]
         x, z = post["at"]
         found.append((np.array([[x, post[e], z] for e in ("bottom", "top")]), post["radius"]))
     return found
-
-
-def _corners(around: dict[str, Any]) -> list[Float[np.ndarray, "n 3"]]:
-    """Points of what stands around, which the picture shows as well."""
-    shapes = [_on_floor(item["points"]) for item in around.get("obstacles", ())]
-    return [*shapes, *(ends for ends, _ in _rods(around))]

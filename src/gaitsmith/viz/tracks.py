@@ -11,11 +11,12 @@ import numpy as np
 from gaitsmith.conventions import SIDES, ahead
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import inverse, multiply, rotate
-from gaitsmith.ground import Flat, HeightField, Stairs, ground_from_json
+from gaitsmith.ground import Flat, ground_from_json
 from gaitsmith.motion.kinematics import motion_kinematics, sole_positions
 from gaitsmith.skin.build import build_skin
 from gaitsmith.skin.t_pose import in_t_pose
 from gaitsmith.viz.around import surroundings_of
+from gaitsmith.viz.terrain import Land
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
@@ -104,25 +105,10 @@ class Tracks:
         """Height of the ground, meters, from the labels; else the level of the lowest foot."""
         return self.surface.height(x, z)
 
-    @property
-    def is_level(self) -> bool:
-        """Whether the ground is one level plane."""
-        return isinstance(self.surface, Flat)
-
-    def ground_lines(
-        self, around: Float[np.ndarray, "3"], reach: float
-    ) -> tuple[Float[np.ndarray, "columns"], Float[np.ndarray, "rows"]]:
-        """X and z of lines that cut the ground into plane cells (meters), risers included."""
-        cell = 0.1 if isinstance(self.surface, HeightField) else 0.5
-        x, z = (
-            cell * np.arange(np.ceil((c - reach) / cell), np.floor((c + reach) / cell) + 1)
-            for c in (around[0], around[2])
-        )
-        if isinstance(self.surface, Stairs):
-            riser = self.surface.risers
-            riser = riser[np.abs(riser - around[2]) < reach]
-            z = np.unique(np.concatenate([z, riser - 1e-6, riser + 1e-6]))
-        return x, z
+    @cached_property
+    def land(self) -> Land:
+        """The ground and the obstacles on it, as they are drawn."""
+        return Land.of(self.surface, self.around.obstacles)
 
     @cached_property
     def around(self) -> Surroundings:
