@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,7 @@ from gaitsmith.errors import (
 )
 from gaitsmith.learning import CLIPS, body_of, learn
 from gaitsmith.style.composition import composition
-from gaitsmith.style.examples import examples_of
+from gaitsmith.style.examples import Examples, examples_of
 from gaitsmith.style.recipe import (
     Recipe,
     Style,
@@ -26,10 +27,13 @@ from gaitsmith.style.recipe import (
 )
 from gaitsmith.style.restyle import rule_gait
 from gaitsmith.style.rules import RULES
-from gaitsmith.walks.learned import SUFFIX, LearnedGait, gait_of_cycle, read_gait
+from gaitsmith.walks.learned import SUFFIX, LearnedGait, gait_of_cycle, read_gait, said_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.gait.cycle import Cycle
 
 #: Licenses that forbid selling, however they say it.
 NON_COMMERCIAL = re.compile(r"non[\s-]?commercial|\bNC\b|\bBY-NC", re.IGNORECASE)
@@ -104,7 +108,7 @@ def _composed(
 ) -> LearnedGait:
     gaits = _gaits(asked, given, base)
     body = gaits[asked.input].body if asked.body is None else body_of(_beside(asked.body, base))
-    examples = examples_of({n: g.cycle for n, g in gaits.items()}, body)
+    examples = _ready(tuple(gaits), tuple(g.cycle for g in gaits.values()), body)
     found = composition(examples, asked.mix)
     for note in found.notes:
         if not note.startswith("leg weights"):
@@ -120,8 +124,15 @@ def _composed(
         body,
         name=title,
         notes=found.notes,
+        feet=found.feet,
         recipe={**recipe_to_dict(asked), "name": title, "sources": sources},
     )
+
+
+@lru_cache(8)
+def _ready(names: tuple[str, ...], cycles: tuple[Cycle, ...], body: Body) -> Examples:
+    """Examples that were mixed just now are mixed again: a recipe is tuned by trying."""
+    return examples_of(dict(zip(names, cycles, strict=True)), body)
 
 
 def _with_styles(
@@ -199,15 +210,7 @@ def _gait(style: Style, base: Path) -> LearnedGait:
             f"{spec!r} is neither a built-in style ({known}), nor a gait file (*{SUFFIX}), nor a "
             f"clip ({', '.join(CLIPS)})"
         )
-    if style.license is None and style.source is None:
-        return gait
-    from dataclasses import replace
-
-    cycle = gait.cycle.with_(
-        license=gait.cycle.license if style.license is None else style.license,
-        source=gait.cycle.source if style.source is None else style.source,
-    )
-    return replace(gait, cycle=cycle)
+    return said_of(gait, license=style.license, source=style.source)
 
 
 def _beside(body: str | float, base: Path) -> str | float | Path:

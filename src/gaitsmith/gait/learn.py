@@ -19,7 +19,7 @@ from gaitsmith.gait.events import FootPath, Stance, stances
 from gaitsmith.gait.loop import average, closed, mirrored
 from gaitsmith.gait.strides import Clip, Span, gap_between, score, spans_of, straight, walked
 from gaitsmith.geometry.rotations import about, multiply, rotate, sign_continuous
-from gaitsmith.motion.kinematics import forward_kinematics, motion_kinematics, sole_positions
+from gaitsmith.motion.kinematics import motion_kinematics, sole_positions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -366,27 +366,34 @@ class Standing:
     heading: Float[np.ndarray, "2"]
     height: float
 
+    def moved(self, by: Float[np.ndarray, "3"]) -> Standing:
+        """Of the same stride with its center moved."""
+        return Standing(self.place + by[[0, 2]], self.heading, self.height + float(by[1]))
 
-def standing_feet(cycle: Cycle) -> Standing:
+
+def standing_feet(cycle: Cycle, *, stride_length: float | None = None) -> Standing:
     """Where and how both feet stand flat in ``cycle``, meters and radians.
 
     N of the left foot's stance at stride phase 0, of the right one's within the same stride;
-    ``height`` is that of the soles, the mean of both feet.
+    ``height`` is that of the soles, the mean of both feet. ``stride_length``: instead of the
+    cycle's own.
     """
     count = len(cycle.center) // cycle.strides
+    ankles, soles = cycle.feet
+    # a stance may begin in this stride and end in the next
     phase = np.arange(2 * count) / count
-    center, turned = cycle.at(phase)
-    center = center + phase[:, None] * np.array([0.0, 0.0, cycle.stride_length])
-    positions, world = forward_kinematics(cycle.skeleton, center, turned)
-    soles = sole_positions(cycle.skeleton, positions, world)
+    length = cycle.stride_length if stride_length is None else stride_length
+    ahead = (phase * length)[:, None, None] * np.array([0.0, 0.0, 1.0])
+    ankles = np.concatenate([ankles, ankles]) + ahead
+    soles = np.concatenate([soles, soles]) + ahead[..., None, :]
     place, heading, heights = np.empty((2, 2)), np.empty(2), np.empty(2)
-    for side, name in enumerate(SIDES):
+    for side in range(len(SIDES)):
         strike, flat, off, _ = cycle.events[side]
         begin = strike + (flat - strike) % 1.0
         stands = (phase >= begin) & (phase <= begin + (off - flat) % 1.0)
         heel, ball = soles[stands, side, HEEL], soles[stands, side, BALL]
         along = (ball - heel) / np.linalg.norm(ball - heel, axis=-1, keepdims=True)
-        ankle = positions[stands, cycle.skeleton.index(f"{name}Foot")]
+        ankle = ankles[stands, side]
         n = heel + ((ankle - heel) * along).sum(-1, keepdims=True) * along
         place[side] = n.mean(0)[[0, 2]]
         heading[side] = np.arctan2(along[:, 0].mean(), along[:, 2].mean())

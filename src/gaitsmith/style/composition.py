@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from gaitsmith.style.components import decompose
@@ -15,6 +16,10 @@ if TYPE_CHECKING:
     from gaitsmith.style.components import Components
     from gaitsmith.style.examples import Examples
     from gaitsmith.style.weights import Mix
+
+
+#: Components of the examples that were mixed last.
+_decomposed = lru_cache(8)(decompose)
 
 
 def composition(
@@ -32,7 +37,7 @@ def composition(
     )
     needed = mix.engine == "keys" or mix.legs != "given" or vectors
     if components is None and needed and len(examples.names) > 1:
-        components = decompose(examples)
+        components = _decomposed(examples)
     if mix.legs == "given" or components is None:
         return mixed(examples, mix, components)
     at = "stance" if mix.legs == "optimized" else "keys"

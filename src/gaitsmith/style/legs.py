@@ -18,12 +18,12 @@ from gaitsmith._checks import one_of
 from gaitsmith.conventions import SIDES
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import exp, multiply, rotate, to_matrix
+from gaitsmith.geometry.threads import on_one_thread
 from gaitsmith.motion.kinematics import forward_kinematics
 from gaitsmith.style.align import mapped, slots_over
 from gaitsmith.style.interpolation import periodic_cubic
 from gaitsmith.style.mix import mixed_timing, part_weights
 from gaitsmith.style.ranks import displacements, ranked
-from gaitsmith.style.threads import on_one_thread
 from gaitsmith.style.weights import vector
 
 if TYPE_CHECKING:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from jaxtyping import Float
 
+    from gaitsmith.gait.learn import Standing
     from gaitsmith.style.components import Components
     from gaitsmith.style.examples import Examples
     from gaitsmith.style.weights import Mix
@@ -52,12 +53,15 @@ class Mixed:
         On the examples' skeleton; closed.
     timing
         Of its feet: the mean of the examples' by the weights of the root.
+    feet
+        How they stand in it.
     notes
         What was changed or should be looked at.
     """
 
     cycle: Cycle
     timing: Timing
+    feet: Standing
     notes: tuple[str, ...]
 
 
@@ -402,6 +406,7 @@ def _walking(
             f"take {SLOWEST_STEPS:g} to {FASTEST_STEPS:g}, so it walks at "
             f"{length / duration:.2f} m/s"
         )
-    cycle = cycle.with_(stride_length=length, duration=duration)
-    sinks = standing_feet(cycle).height - float(shares @ examples.heights)
-    return Mixed(cycle.with_(center=cycle.center - [0.0, sinks, 0.0]), timing, tuple(notes))
+    feet = standing_feet(cycle, stride_length=length)
+    lift = np.array([0.0, float(shares @ examples.heights) - feet.height, 0.0])
+    cycle = cycle.with_(center=cycle.center + lift, stride_length=length, duration=duration)
+    return Mixed(cycle, timing, feet.moved(lift), tuple(notes))
