@@ -16,7 +16,7 @@ from gaitsmith.errors import (
     InvalidInputError,
 )
 from gaitsmith.learning import CLIPS, body_of, learn
-from gaitsmith.style.composition import composition
+from gaitsmith.style.composition import at_other_lengths, composition
 from gaitsmith.style.examples import Examples, examples_of
 from gaitsmith.style.recipe import (
     Recipe,
@@ -27,7 +27,16 @@ from gaitsmith.style.recipe import (
 )
 from gaitsmith.style.restyle import rule_gait
 from gaitsmith.style.rules import RULES
-from gaitsmith.walks.learned import SUFFIX, LearnedGait, gait_of_cycle, read_gait, said_of
+from gaitsmith.walks.learned import (
+    SUFFIX,
+    LearnedGait,
+    gait_of_cycle,
+    grounded,
+    read_gait,
+    said_of,
+    with_others,
+)
+from gaitsmith.walks.stride import stride_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -115,18 +124,24 @@ def _composed(
             warnings.warn(note, GaitsmithWarning, stacklevel=3)
     sources = [_source_of(n, asked.styles.get(n), g) for n, g in gaits.items()]
     title = name or asked.name
-    cycle = found.cycle.with_(
-        source="composed of " + ", ".join(s["name"] for s in sources),
-        license=license_of([s["license"] for s in sources]),
-    )
-    return gait_of_cycle(
-        cycle,
+    said = {
+        "source": "composed of " + ", ".join(s["name"] for s in sources),
+        "license": license_of([s["license"] for s in sources]),
+    }
+    gait = gait_of_cycle(
+        found.cycle.with_(**said),
         body,
         name=title,
         notes=found.notes,
         feet=found.feet,
         recipe={**recipe_to_dict(asked), "name": title, "sources": sources},
     )
+    if not any(source.others for source in gaits.values()):
+        return gait
+    leveled = ((g.cycle, *(other.cycle for other in g.others)) for g in gaits.values())
+    others = at_other_lengths(examples, asked.mix, dict(zip(gaits, leveled, strict=True)))
+    brought = (grounded(mix.cycle.with_(**said), mix.feet) for mix in others)
+    return with_others(gait, [stride_of(cycle, body, feet) for cycle, feet in brought])
 
 
 @lru_cache(8)

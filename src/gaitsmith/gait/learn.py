@@ -37,6 +37,8 @@ SAMPLES = 128
 HARMONICS = 10
 #: Radians that a stride's arms may be apart at its ends and still be closed within one stride.
 _ARMS_GAP = float(np.radians(25.0))
+#: Leg lengths by which strides that are learned of one clip differ.
+DIFFERENT = 0.1
 #: Least double support after each heel strike, share of the stride: 4 % in all.
 _DOUBLE = 0.02
 #: Least share of the stride between two events of a foot.
@@ -103,10 +105,45 @@ def learn_cycle(
     InfeasibleError
         If the clip holds no 1.6 strides of straight, forward walking, or if it is running.
     """
+    return learn_cycles(
+        person, 1, symmetric=symmetric, events=events, source=source, license=license
+    )[0]
+
+
+def learn_cycles(
+    person: Person,
+    most: int,
+    *,
+    symmetric: bool = False,
+    events: Sequence[Stance] | None = None,
+    source: str = "",
+    license: str = "",
+) -> list[Learned]:
+    """Up to ``most`` closed strides of ``person`` with different step lengths.
+
+    The first is that of :func:`learn_cycle`; the others are those that close best of what differs
+    in length by :data:`DIFFERENT` from all before.
+    """
     notes: list[str] = []
     clip = _prepared(person, events, notes)
     spans = straight(clip, spans_of(clip.stances), notes)
     spans = walked(clip, spans)
+    usual = _usual(clip, spans, symmetric, list(notes), source, license)
+    out, lengths = [usual], [usual.cycle.stride_length]
+    names = clip.motion.skeleton.names[1:]
+    for span in sorted(spans, key=lambda s: gap_between(clip, s.first, s.last, names)):
+        length = clip.length(span.first, span.last)
+        near = DIFFERENT * clip.body.leg_length
+        if len(out) < most and min(abs(length - other) for other in lengths) >= near:
+            out.append(_learned(clip, span, span.last, 1, symmetric, [], source, license))
+            lengths.append(length)
+    return out
+
+
+def _usual(
+    clip: Clip, spans: list[Span], symmetric: bool, notes: list[str], source: str, license: str
+) -> Learned:
+    """The stride that closes best and is most usual; two where the arms need them."""
     best = min(spans, key=lambda s: score(clip, s, spans))
     strides, last = 1, best.last
     gap = gap_between(clip, best.first, best.last, _ARMS)

@@ -13,7 +13,7 @@ from gaitsmith._version import __version__
 from gaitsmith.body.files import body_from_dict, body_to_dict
 from gaitsmith.body.rig import skeleton_of
 from gaitsmith.conventions import SIDES
-from gaitsmith.errors import FileFormatError, GaitsmithError
+from gaitsmith.errors import FileFormatError, GaitsmithError, InvalidInputError
 from gaitsmith.gait.cycle import EVENTS
 from gaitsmith.gait.events import Stance
 from gaitsmith.gait.learn import Learned, standing_feet
@@ -27,6 +27,7 @@ from gaitsmith.walks.stride import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from gaitsmith.body.body import Body
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
 
 FORMAT = "gaitsmith-gait-1"
 SUFFIX = ".gait.json"
+#: Leg lengths that the steps of a gait's strides differ by at least.
+APART = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +153,33 @@ def said_of(gait: LearnedGait, *, license: str | None, source: str | None) -> Le
     return replace(gait, stride=strides[0], others=tuple(strides[1:]))
 
 
+def with_others(gait: LearnedGait, strides: Iterable[GaitStride]) -> LearnedGait:
+    """``gait`` with ``strides`` of the same person and style at other step lengths.
+
+    What is nearer than :data:`APART` to one before it, or whose left and right steps are in
+    another order, is left out, and ``notes`` say so.
+
+    Raises
+    ------
+    InvalidInputError
+        If a stride is of another body.
+    """
+    kept, notes = [gait.stride], list(gait.notes)
+    for stride in strides:
+        if stride.walk_data[0].body != gait.body:
+            raise InvalidInputError("the strides of a gait must be of one body; see on_body")
+        off = np.array([np.subtract(stride.ratios, other.ratios) for other in kept])
+        if (np.abs(off) >= APART).all() and (off[:, 0] * off[:, 1] > 0.0).all():
+            kept.append(stride)
+        else:
+            notes.append(
+                f"a stride of {stride.cycle.stride_length:.2f} m left out: too near in length to "
+                "another"
+            )
+    others = sorted(kept[1:], key=lambda stride: stride.cycle.stride_length)
+    return replace(gait, others=tuple(others), notes=tuple(notes))
+
+
 def _filed(pair: tuple[float, float], *, degrees: bool = False) -> tuple[float, float]:
     """Two numbers as a file will hold them."""
     if degrees:
@@ -157,6 +187,14 @@ def _filed(pair: tuple[float, float], *, degrees: bool = False) -> tuple[float, 
     else:
         one, two = rounded(pair)
     return float(one), float(two)
+
+
+def grounded(cycle: Cycle, feet: Standing | None = None) -> tuple[Cycle, Standing]:
+    """``cycle`` with its feet on the ground at both sides of the line it walks along."""
+    feet = standing_feet(cycle) if feet is None else feet
+    middle = 0.5 * (feet.place[0, 0] + feet.place[1, 0])
+    by = -np.array([middle, feet.height, cycle.center[:, 2].mean()])
+    return cycle.with_(center=cycle.center + by), feet.moved(by)
 
 
 def gait_of_cycle(
@@ -173,10 +211,7 @@ def gait_of_cycle(
     Its steps, its width and its toe-out are what its feet do; ``feet`` says how they stand, where
     that is known already.
     """
-    feet = standing_feet(cycle) if feet is None else feet
-    middle = 0.5 * (feet.place[0, 0] + feet.place[1, 0])
-    by = -np.array([middle, feet.height, cycle.center[:, 2].mean()])
-    cycle, feet = cycle.with_(center=cycle.center + by), feet.moved(by)
+    cycle, feet = grounded(cycle, feet)
     ahead = float(feet.place[1, 1] - feet.place[0, 1])
     found = Learned(
         cycle=cycle,
@@ -224,6 +259,7 @@ def gait_to_dict(gait: LearnedGait) -> dict[str, Any]:
         "events": stride.pop("events"),
         "upper_body": gait.upper_body,
         **stride,
+        **({"others": [stride_to_dict(other) for other in gait.others]} if gait.others else {}),
     }
 
 
@@ -232,8 +268,10 @@ def gait_from_dict(data: dict[str, Any]) -> LearnedGait:
     if data["format"] != FORMAT:
         raise ValueError(f"format is {data['format']!r}, not {FORMAT!r}")
     body = body_from_dict(data["body"])
-    stride = stride_from_dict(
-        data, skeleton_of(body), source=data["source"], license=data["license"]
+    skeleton = skeleton_of(body)
+    stride, *others = (
+        stride_from_dict(each, skeleton, source=data["source"], license=data["license"])
+        for each in (data, *data.get("others", ()))
     )
     if data["upper_body"] not in ("measured", "rules"):
         raise ValueError(f"upper_body must be 'measured' or 'rules', got {data['upper_body']!r}")
@@ -253,6 +291,7 @@ def gait_from_dict(data: dict[str, Any]) -> LearnedGait:
         span=(float(data["clip"]["span_s"][0]), float(data["clip"]["span_s"][1])),
         notes=tuple(data["notes"]),
         recipe=data.get("recipe"),
+        others=tuple(others),
     )
 
 

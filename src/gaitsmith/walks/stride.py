@@ -60,9 +60,10 @@ class GaitStride:
         )
 
     @property
-    def ratio(self) -> float:
-        """Mean step length over leg length."""
-        return 0.5 * self.cycle.stride_length / self.walk_data[0].body.leg_length
+    def ratios(self) -> tuple[float, float]:
+        """Length over leg length of the steps on the [left, right] foot."""
+        left, right = self.walk_data
+        return left.character.ratio, right.character.ratio
 
 
 def stride_of(cycle: Cycle, body: Body, feet: Standing | None = None) -> GaitStride:
