@@ -18,6 +18,7 @@ from gaitsmith.gait.learn import standing_feet, symmetrized
 from gaitsmith.geometry.rotations import exp, inverse, log, multiply
 from gaitsmith.style.align import Timing, mapped, phases, slots_over
 from gaitsmith.style.examples import AMBIGUOUS
+from gaitsmith.style.hanging import with_hanging_arms
 from gaitsmith.style.interpolation import periodic_cubic, periodic_linear, periodic_slerp
 from gaitsmith.style.parts import PARTS
 from gaitsmith.style.retarget import stride_by_feet
@@ -99,7 +100,11 @@ def mixed(
     timing = mixed_timing(examples, mix)
     strides = _strides(examples, mix, weights)
     frame = _Frame(examples, mix, timing, strides, components, weights, dict(legs or {}))
-    center, turned = frame.dense() if mix.engine == "dense" else frame.keyed()
+    if mix.engine == "dense":
+        center, turned = frame.dense()
+        turned = with_hanging_arms(examples, frame.root, weights, turned)
+    else:
+        center, turned = frame.keyed()
     return _walking(examples, mix, timing, strides, center, turned, notes)
 
 
