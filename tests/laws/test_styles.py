@@ -7,11 +7,13 @@ from functools import cache
 
 import numpy as np
 import pytest
-from judge import broken
+from judge import broken, posed
 from people import person
 from styles import apart, slide
 
+from gaitsmith.body.masses import center_of_mass, segments_of
 from gaitsmith.body.rig import skeleton_of
+from gaitsmith.conventions import GRAVITY
 from gaitsmith.errors import GaitsmithWarning, UnknownNameError
 from gaitsmith.gait.neutral import subject
 from gaitsmith.geometry.rotations import multiply, rotate
@@ -163,6 +165,30 @@ def walked(name, way, body):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", GaitsmithWarning)
         return walk(path=WAYS[way], gait=name, body=body_of(body), fps=120)
+
+
+@pytest.mark.parametrize(
+    "radius", [1.2, *(pytest.param(r, marks=pytest.mark.slow) for r in (2.0, 5.0))]
+)
+@pytest.mark.parametrize(
+    "name", ["sneaky", *(pytest.param(n, marks=pytest.mark.slow) for n in STYLES if n != "sneaky")]
+)
+def test_it_leans_as_the_curve_asks(name, radius):
+    """[KB92a] Eq. 4 to 10 %, low walks too."""
+    body = person(1.75)
+    path = Path.arc(radius, max(12.0 / radius, 4.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", GaitsmithWarning)  # of curves, which shorten steps
+        motion = walk(path=path, gait=name, body=body, fps=120, start="walk", stop="walk")
+    positions, _, _ = posed(motion)
+    mass = center_of_mass(motion.skeleton, positions, segments_of(body))
+    labels, center = motion.labels, np.array([radius, 0.0])
+    a, b = np.round(labels.footstep_time[[6, 10]] * 120).astype(int)
+    out = np.hypot(*(mass[a:b, [0, 2]] - center).T).mean()
+    feet = np.hypot(*(labels.footstep_position[6:10, [0, 2]] - center).T).mean()
+    speed = np.hypot(*np.diff(mass[a:b, [0, 2]], axis=0).T).mean() * 120
+    lean = np.arctan((feet - out) / mass[a:b, 1].mean())
+    assert lean == pytest.approx(np.arctan(speed**2 / (GRAVITY * out)), rel=0.1)
 
 
 def strides_of(motion, right):
