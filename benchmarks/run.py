@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 import gaitsmith
+from gaitsmith.ground import HeightField
 from gaitsmith.io.bvh import write_bvh
 from gaitsmith.motion.kinematics import forward_kinematics
 from gaitsmith.walks import winter
@@ -72,6 +73,13 @@ def process_ratio(command: list[str], yardstick: list[str]) -> float:
     return statistics.median(a / b for a, b in pairs)
 
 
+def hilly() -> HeightField:
+    """Relief of 0.2 m over 10 m, 60 m by 60 m."""
+    x = np.arange(-15.0, 60.0, 0.1)
+    height = 0.1 * np.sin(0.6 * x)[:, None] * np.cos(0.6 * x)[None]
+    return HeightField(height, 0.1, (-15.0, -15.0))
+
+
 def row(what: str, value: float, bar: float | None, note: str = "") -> None:
     limit = "" if bar is None else f"bar {bar:g}"
     mark = "" if bar is None or value <= bar else "  ABOVE"
@@ -114,6 +122,28 @@ def main() -> None:
         7.0,
         f"{1e6 * own / len(bent):.1f} us against {1e6 * yard / len(bent):.1f} us a frame",
     )
+
+    hills = hilly()
+    for what, walker, bar in (
+        ("curved walk on a height field", "kinematic", 13.0),
+        ("elevation walker on it", "elevation", 170.0),
+    ):
+
+        def uneven(walker: str = walker) -> gaitsmith.Motion:
+            return gaitsmith.walk(path=curve[:30], ground=hills, walker=walker, fps=120)
+
+        up = uneven()
+
+        def its_kinematics(clip: gaitsmith.Motion = up) -> None:
+            forward_kinematics(clip.skeleton, clip.root_position, clip.rotations)
+
+        own, yard, times = ratio(uneven, its_kinematics, repeats=3)
+        row(
+            f"{what}, {len(up)} frames / forward kinematics of the clip",
+            times,
+            bar,
+            f"{1e6 * own / len(up):.1f} us against {1e6 * yard / len(up):.1f} us a frame",
+        )
 
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "a.bvh"

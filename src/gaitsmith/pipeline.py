@@ -30,6 +30,7 @@ from gaitsmith.plan.script import Script, Tempo
 from gaitsmith.plan.start import Start, start_of, start_to_dict
 from gaitsmith.plan.surroundings import Surroundings
 from gaitsmith.plan.where import read_where
+from gaitsmith.synthesis.gaits import with_walker
 from gaitsmith.synthesis.generators import generator_for
 from gaitsmith.synthesis.habits import own_pace, stance_of, with_habits
 from gaitsmith.synthesis.sample import sample_walk
@@ -90,6 +91,7 @@ def walk(
     ground: str | Path | Ground | dict[str, Any] = "flat",
     body: str | float | Path | Body = 1.75,
     gait: str | Path | LearnedGait | dict[str, Any] = "neutral",
+    walker: str = "kinematic",
     step_length: float | None = None,
     cadence: float | None = None,
     speed: float | None = None,
@@ -140,6 +142,9 @@ def walk(
     gait
         Name of a built-in gait (``gaitsmith list gaits``), a ``.gait.json`` file, a clip to learn
         from, or what :func:`gaitsmith.learn` returned.
+    walker
+        ``"kinematic"``: the gait's measured step, generalized [KB92b]. ``"elevation"``: elevation
+        angles, mixed from sets of the same legs for steps of any length, up and down hill [SM01].
     step_length, cadence, speed
         Meters, steps per minute, meters per second. Any two fix the third, one is completed
         as people do, none is the body's preferred pace; see
@@ -222,6 +227,7 @@ def walk(
     one_of("banking", banking, BANKINGS)
     manner = manner or Manner()
     style, named = gait_from(gait, manner)
+    style = with_walker(style, walker)
     stance = stance_of(who, step_width, toe_out, style.habits)
     if step_length is not None:
         check_step_length(who, positive("step_length", step_length, "meters"))
@@ -236,7 +242,10 @@ def walk(
     asked = Tempo(speed, step_length, cadence)
     pace = paced(asked)
     actions = where.actions if isinstance(where, Script) else ()
-    others = gaits_named(actions, gaits or {}, manner)
+    others = {
+        name: (with_walker(other, walker), told)
+        for name, (other, told) in gaits_named(actions, gaits or {}, manner).items()
+    }
     around = Surroundings.read(surroundings)
     recipe = {
         "gaitsmith": __version__,
@@ -245,6 +254,7 @@ def walk(
             **({} if ground == Flat() else {"ground": ground.as_json()}),
             "body": body_to_dict(who),
             "gait": named,
+            **({} if walker == "kinematic" else {"walker": walker}),
             "step_length": step_length,
             "cadence": cadence,
             "speed": speed,

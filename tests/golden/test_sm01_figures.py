@@ -1,4 +1,4 @@
-"""[SM01] Figures 15 and 17 as data: positions that come out of elevation angles alone.
+"""[SM01] Figures 15 to 17 as data: positions that come out of elevation angles alone.
 
 The printed figures are missing from our copy, so what the text says of them is asserted.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gaitsmith.gait.neutral import subject
+from gaitsmith.gait.neutral import neutral_cycle, subject
 from gaitsmith.synthesis.elevation_exact import ExactWalker
 from gaitsmith.walks.elevation_sets import built_in_sets
 
@@ -56,3 +56,16 @@ def test_figure_17_the_pelvis_runs_ahead_and_behind_twice_a_stride(stride, golde
     assert 0.3 < size[2] < 2.0
     np.testing.assert_allclose(ahead[: FRAMES + 1], ahead[FRAMES:], atol=0.05)
     golden("sm01_fig17", atol=1e-3, phase=phase, ahead_cm=ahead)
+
+
+def test_figure_16_the_measured_pelvis_runs_ahead_and_behind_twice_a_stride(golden):
+    """The man whose legs the sets are; what Figure 17 is to be compared with."""
+    cycle = neutral_cycle()
+    ahead = 100.0 * (cycle.center[:, 2] - cycle.center[:, 2].mean())
+    size = 2.0 * np.fft.rfft(ahead) / len(ahead)
+    assert np.abs(size)[2] == np.abs(size)[1:].max()
+    # the form in which docs/papers/sm01.md gives it: cos and sin of 4 pi t, centimeters
+    assert size[2].real == pytest.approx(-1.41, abs=0.02)
+    assert -size[2].imag == pytest.approx(1.11, abs=0.02)
+    phase = np.arange(len(ahead)) / len(ahead)
+    golden("sm01_fig16", atol=1e-3, phase=phase, ahead_cm=ahead)

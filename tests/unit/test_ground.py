@@ -220,3 +220,16 @@ def test_many_places_against_many_edges():
 def test_json_that_is_no_ground(data, says):
     with pytest.raises(InvalidInputError, match=says):
         ground_from_json(data)
+
+
+def test_no_line_on_a_field_bends_more_than_it_says():
+    rng = np.random.default_rng(5)
+    field = HeightField(np.cumsum(np.cumsum(rng.normal(0, 1e-3, (30, 30)), 0), 1) * 0.1, 0.1)
+    start, way = rng.uniform(-6.0, -4.0, (400, 2)) + [0.0, 6.0], rng.normal(size=(400, 2))
+    way /= np.linalg.norm(way, axis=-1, keepdims=True)
+    for span in (0.1, 0.2, 0.3):
+        ends = [field.height(*(start + k * span * way).T) for k in (-1.0, 0.0, 1.0)]
+        bent = np.abs(ends[0] - 2.0 * ends[1] + ends[2]) / span**2
+        assert bent.max() <= field.most_bent * (1.0 + field.cell / span)
+    flat = HeightField(np.add.outer(0.1 * np.arange(9.0), 0.2 * np.arange(9.0)), 0.1)
+    assert flat.most_bent < 1e-9

@@ -58,6 +58,9 @@ def walk(
     gait: Annotated[
         str, typer.Option(help="A name of `list gaits`, FILE.gait.json, or a clip to learn from.")
     ] = "neutral",
+    walker: Annotated[
+        str, typer.Option(help="kinematic | elevation: how the legs are generalized.")
+    ] = "kinematic",
     step_length: Annotated[float | None, typer.Option(help="Meters.")] = None,
     speed: Annotated[float | None, typer.Option(help="Meters per second.")] = None,
     cadence: Annotated[float | None, typer.Option(help="Steps per minute.")] = None,
@@ -96,6 +99,7 @@ def walk(
             ground=ground,
             body=body,
             gait=gait,
+            walker=walker,
             step_length=step_length,
             cadence=cadence,
             speed=speed,

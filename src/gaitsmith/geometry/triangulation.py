@@ -41,25 +41,33 @@ class Triangulation:
 
     def _first(self, count: int) -> None:
         hull = set[tuple[int, int]]()
-        for a, b, c in combinations(range(count), 3):
-            turn = self._turn(a, b, c)
-            if turn == 0.0:
-                continue
-            corners = (a, b, c) if turn > 0.0 else (a, c, b)
-            others = [p for p in range(count) if p not in corners]
-            # of points on one circle the first triangulation found is kept
-            if any(self._in_circle(corners, self.points[p], strict=True) for p in others):
-                continue
+        for corners in self._empty(count):
             sides = _sides(corners)
             if not any(side in hull for side in sides) and not self._overlaps(corners):
                 hull.update(sides)
                 self._add(corners)
 
+    def _empty(self, count: int) -> list[tuple[int, int, int]]:
+        """Triangles, counter-clockwise, in whose circles no point lies; some share their circle."""
+        triples = np.array(list(combinations(range(count), 3)), dtype=np.int64).reshape(-1, 3)
+        turns = np.array([self._turn(a, b, c) for a, b, c in triples.tolist()])
+        triples, turns = triples[turns != 0.0], turns[turns != 0.0]
+        triples = np.where(turns[:, None] > 0.0, triples, triples[:, [0, 2, 1]])
+        arms = self.points[triples][:, None] - self.points[:, None]
+        square = (arms * arms).sum(-1)
+        crossed = arms[..., [1, 2, 0], 0] * arms[..., [2, 0, 1], 1]
+        crossed = crossed - arms[..., [1, 2, 0], 1] * arms[..., [2, 0, 1], 0]
+        inside = (square * crossed).sum(-1) > 1e-12 * square.max(-1) ** 2
+        every = np.arange(len(triples))
+        inside[every[:, None], triples] = False  # its own corners
+        # of points on one circle the first triangulation found is kept
+        return [(a, b, c) for a, b, c in triples[~inside.any(axis=1)].tolist()]
+
     def _overlaps(self, corners: tuple[int, int, int]) -> bool:
         """Whether the middle of a new triangle lies in one that is there, or the reverse."""
-        middle = self.points[list(corners)].mean(axis=0)
+        middle = self.points[list(corners)].sum(axis=0) / 3.0
         for other in self.triangles.tolist():
-            there = self.points[other].mean(axis=0)
+            there = self.points[other].sum(axis=0) / 3.0
             own = self._barycentric(corners, there).min()
             theirs = self._barycentric((other[0], other[1], other[2]), middle).min()
             if own > 1e-12 or theirs > 1e-12:
@@ -131,20 +139,20 @@ class Triangulation:
         size = float(max(u @ u, v @ v, (u - v) @ (u - v)))
         return area if abs(area) > _THIN * size else 0.0
 
-    def _in_circle(
-        self, triangle: tuple[int, int, int], point: Float[np.ndarray, "2"], *, strict: bool = False
-    ) -> bool:
+    def _in_circle(self, triangle: tuple[int, int, int], point: Float[np.ndarray, "2"]) -> bool:
         """Whether ``point`` is inside the circle through the corners."""
         arms = self.points[list(triangle)] - point
         table = np.concatenate([arms, (arms * arms).sum(-1, keepdims=True)], axis=1)
-        size = float(np.abs(table[:, 2]).max()) ** 2
-        return float(np.linalg.det(table)) > (1e-12 * size if strict else 0.0)
+        return float(np.linalg.det(table)) > 0.0
 
     def _barycentric(
         self, triangle: tuple[int, int, int], point: Float[np.ndarray, "2"]
     ) -> Float[np.ndarray, "3"]:
-        a, b, c = self.points[list(triangle)]
-        first, second = np.linalg.solve(np.stack([a - c, b - c], axis=1), point - c)
+        (ax, ay), (bx, by), (cx, cy) = self.points[list(triangle)].tolist()
+        x, y = float(point[0]) - cx, float(point[1]) - cy
+        ax, ay, bx, by = ax - cx, ay - cy, bx - cx, by - cy
+        area = ax * by - ay * bx  # plain numbers: a solver takes ten times as long for two
+        first, second = (x * by - y * bx) / area, (ax * y - ay * x) / area
         return np.array([first, second, 1.0 - first - second])
 
 

@@ -69,6 +69,16 @@ class HeightField:
         object.__setattr__(self, "cell", positive("cell", self.cell, "meters"))
         object.__setattr__(self, "origin", (x, z))
 
+    @cached_property
+    def most_bent(self) -> float:
+        """Change of slope per meter, along any line, that is nowhere exceeded."""
+        h, bent = self.heights, 0.0
+        for a, b, c in ((h[:-2], h[1:-1], h[2:]), (h[:, :-2], h[:, 1:-1], h[:, 2:])):
+            if a.size:
+                bent = max(bent, float(np.abs(a - 2.0 * b + c).max()))
+        twisted = float(np.abs(h[1:, 1:] - h[1:, :-1] - h[:-1, 1:] + h[:-1, :-1]).max())
+        return (bent + twisted) / self.cell**2
+
     def height(
         self, x: Float[np.ndarray, "*n"], z: Float[np.ndarray, "*n"]
     ) -> Float[np.ndarray, "*n"]:

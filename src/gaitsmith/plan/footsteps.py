@@ -99,7 +99,8 @@ class PlannedStep:
     ``stance`` stays; ``following`` is where the stance foot goes next, None at the end;
     ``before`` is where the stance foot came from, None at the beginning. ``local`` says how a
     local step is taken; None: a step of a walk. ``gait`` names another gait than the person's
-    own.
+    own. ``climbs``: on level footsteps that are lifted onto the ground afterwards, meters that the
+    stance foot lies above the rear one there, and the target above the stance foot.
     """
 
     index: int
@@ -112,6 +113,7 @@ class PlannedStep:
     duration: float
     local: LocalStep | None = None
     gait: str | None = None
+    climbs: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,6 +15,7 @@ import numpy as np
 from gaitsmith.errors import InfeasibleStepError
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.synthesis.overlay import overlays
+from gaitsmith.walks.model import ClimbingWalk
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -151,6 +152,19 @@ class Asker:
         """The answer to just this request."""
         step = self.ask_all(body, [request])[0]
         return Answer(request.previous_length, request.length, [step], [1.0], asked=True)
+
+    def answers(self, body: Body, requests: Sequence[StepRequest]) -> list[Answer | None]:
+        """Answers to just these requests; None where ``body`` cannot take one of them."""
+        if isinstance(self._walk, ClimbingWalk):
+            self._walk.foresee(body, requests)
+        try:
+            steps = self.ask_all(body, requests)
+        except InfeasibleStepError:
+            return [None] * len(requests)
+        return [
+            Answer(r.previous_length, r.length, [step], [1.0], asked=True)
+            for r, step in zip(requests, steps, strict=True)
+        ]
 
     def can(self, body: Body, request: StepRequest) -> bool:
         """Whether ``body`` can take such a step."""

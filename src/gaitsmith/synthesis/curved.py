@@ -26,7 +26,7 @@ from gaitsmith.synthesis.bent import Bent, Flat2D
 from gaitsmith.synthesis.center import CenterPath, anchored, track
 from gaitsmith.synthesis.overlay import ArmedOverlayer, stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
-from gaitsmith.synthesis.straight import StraightGenerator
+from gaitsmith.synthesis.straight import StraightGenerator, climbs_of
 from gaitsmith.synthesis.swing_path import SwingPath
 from gaitsmith.synthesis.turning import TRUNK_LEAN, Turning, bend_upper
 from gaitsmith.synthesis.upper_body import RuleOverlay
@@ -107,13 +107,22 @@ class CurvedGenerator:
         # the table is of one pace; so are then the steps that it does not hold
         pace = usual_duration(steps) if tabled else None
         requests = _requests(body, state, steps, bent.length, self._overlay.strides, pace)
+        requests = [
+            replace(r, climbs=climbs_of(s, self._walk))
+            for r, s in zip(requests, steps, strict=True)
+        ]
         anchor = _steady(bent.length[:, 1])
         if tabled:
             _bend_ends(straight, bent.length, anchor)
         curved = [i for i, same in enumerate(straight) if not same]
         read: dict[int, Answer | None] = {}
-        if tabled and curved and not any(requests[i].rise for i in curved):
-            table = self._asker.table(body, [requests[i] for i in curved], anchor)
+        climbing = any(requests[i].rise or any(requests[i].climbs) for i in curved)
+        if tabled and curved:
+            asked = [requests[i] for i in curved]
+            if climbing:  # no two steps are alike: all are asked for, at once
+                table = self._asker.answers(body, asked)
+            else:
+                table = self._asker.table(body, asked, anchor)
             read = dict(zip(curved, table, strict=True))
         out: dict[int, PreparedStep] = {}
         answers: list[Answer] = []

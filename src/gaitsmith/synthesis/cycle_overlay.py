@@ -114,6 +114,7 @@ class CycleOverlay:
 
     def __init__(self, cycle: Cycle, leg_length: float) -> None:
         self._cycle, self.strides = cycle, cycle.strides
+        self.cycle = cycle
         self._length = 0.5 * cycle.stride_length / leg_length
         self._duration = 0.5 * cycle.duration / np.sqrt(leg_length)
         index, q = cycle.skeleton.index, cycle.rotations

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaitsmith._checks import one_of
+from gaitsmith.conventions import LEFT, RIGHT
+from gaitsmith.errors import InvalidInputError
 from gaitsmith.gait.neutral import neutral_cycle, subject
 from gaitsmith.gait.posture import (
     with_easy_shoulders_and_hands,
@@ -42,6 +45,9 @@ PELVIS_TILT = float(np.radians(5.0))
 #: toe-off pitch (radians per leg length): the swing knee flexes 45, 55, 59, 61 deg at very slow to
 #: fast (Schwartz 2008), toe-off pitch is -38 - 17.5 v deg (CMU 07).
 BOUNCE_POWER, SWING_POWER, OFF_GAIN = 3.0, 1.6, 1.0
+
+#: What ``--walker`` names: [KB92b]'s generalized measured step, or elevation angles [SM01].
+WALKERS = ("kinematic", "elevation")
 
 #: Smaller turns of a sole or of toes about their edge are none, radians.
 ONSET = 1e-4
@@ -149,6 +155,36 @@ def learned(gait: LearnedGait, manner: Manner | None = None) -> Gait:
             durations=_over_mean(1.0 - gait.cycle.events[1, 0], gait.cycle.events[1, 0]),
         ),
     )
+
+
+def with_walker(gait: Gait, walker: str) -> Gait:
+    """The same way of walking by one of :data:`WALKERS`."""
+    return gait if one_of("walker", walker, WALKERS) == "kinematic" else by_elevation(gait)
+
+
+@lru_cache(maxsize=16)
+def by_elevation(gait: Gait) -> Gait:
+    """The same way of walking by its elevation angles, [SM01]; remembered."""
+    from gaitsmith.walks.elevation_sets import Legs, spanning_sets  # late: few walks are so led
+    from gaitsmith.walks.elevation_walk import ElevationWalk
+
+    if not isinstance(gait.walk, KinematicWalk):
+        raise InvalidInputError("only a measured or learned walk has elevation data")
+    pairs = gait.walk.prototypes
+    left, right = pairs[len(pairs) // 2]
+    length = 0.5 * (left.length + right.length)
+    overlay = gait.overlay
+    legs = Legs(
+        walk=gait.walk,
+        body=left.body,
+        cycle=(cycle := overlay.cycle if isinstance(overlay, CycleOverlay) else neutral_cycle()),
+        length=length,
+        step_time=0.5 * cycle.duration,
+        source="legs of the gait",
+    )
+    even = left is right
+    sets = [spanning_sets(legs, side) for side in ((LEFT,) if even else (LEFT, RIGHT))]
+    return replace(gait, walk=ElevationWalk(*sets))
 
 
 def _over_mean(left: float, right: float) -> tuple[float, float]:

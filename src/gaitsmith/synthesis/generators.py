@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from gaitsmith.ground import Flat
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.synthesis.straight import StraightGenerator
+from gaitsmith.walks.model import ClimbingWalk
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -36,7 +37,8 @@ def generator_for(
         from gaitsmith.synthesis.uneven import UnevenGenerator
 
         level = generator_for(plan, style, Flat(), banking, ahead=ahead, gaits=gaits)
-        return UnevenGenerator(level, ground)
+        climbs = isinstance(style.walk, ClimbingWalk) and style.walk.climbs
+        return UnevenGenerator(level, ground, climbs=climbs)
     if ahead:
         return StraightGenerator(style.walk, ground, style.overlay)
     from gaitsmith.synthesis.curved import CurvedGenerator

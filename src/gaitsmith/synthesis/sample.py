@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 BLOCK = 2000
 #: Where the real parts of two unit quaternions are above this, they are in one half-sphere.
 NEAR = 0.7072
+#: Stands in a recipe for the JSON of the ground until that is put there.
+_HERE = "\0ground"
 
 
 def sample_walk(
@@ -121,6 +124,21 @@ def _keep_signs(
     return np.array(local[..., -1])
 
 
+@lru_cache(maxsize=4)
+def _ground_text(ground: Ground) -> str:
+    """JSON of a ground; writing half a million heights takes longer than the walk over them."""
+    return json.dumps(ground.as_json(), sort_keys=True)
+
+
+def _recipe_text(recipe: dict[str, Any], ground: Ground) -> str:
+    """JSON of a recipe, whose ground is ``ground`` if it names one."""
+    walk = recipe.get("walk", {})
+    if "ground" not in walk:
+        return json.dumps(recipe, sort_keys=True)
+    text = json.dumps({**recipe, "walk": {**walk, "ground": _HERE}}, sort_keys=True)
+    return text.replace(json.dumps(_HERE), _ground_text(ground), 1)
+
+
 def _labels(
     walk: PreparedWalk, ground: Ground, times: np.ndarray, recipe: dict[str, Any], begin: float
 ) -> Labels:
@@ -141,7 +159,7 @@ def _labels(
         footstep_position=plan.position,
         footstep_heading=plan.heading,
         footstep_time=landing,
-        ground=json.dumps(ground.as_json(), sort_keys=True),
-        recipe=json.dumps(recipe, sort_keys=True),
+        ground=_ground_text(ground),
+        recipe=_recipe_text(recipe, ground),
         path=plan.path,
     )

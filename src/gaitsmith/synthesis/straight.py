@@ -14,7 +14,7 @@ from gaitsmith.errors import InvalidInputError
 from gaitsmith.synthesis.overlay import overlays, stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
 from gaitsmith.synthesis.upper_body import RuleOverlay
-from gaitsmith.walks.model import StepRequest
+from gaitsmith.walks.model import ClimbingWalk, StepRequest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -124,6 +124,7 @@ class StraightGenerator:
                 kind=step.kind,
                 previous_duration=_rounded(state.duration),
                 stride=stride_of(step) % self._overlay.strides,
+                climbs=climbs_of(step, self._walk),
             )
             setting = _Setting(
                 direction=step.stance.direction,
@@ -169,6 +170,14 @@ class StraightGenerator:
             curves, here, side, toe_off, foothold, heading, target.position, target.heading
         )
         return TabledStep(step.duration, end, reference, body, self._ground)
+
+
+def climbs_of(step: PlannedStep, walk: StraightWalk) -> tuple[float, float]:
+    """What the request says of climbing: nothing where ``walk`` does not ask for it."""
+    if not (isinstance(walk, ClimbingWalk) and walk.climbs):
+        return (0.0, 0.0)
+    before, this = (round(climb, 12) for climb in step.climbs)
+    return before, this
 
 
 def _rounded(value: float | None) -> float | None:

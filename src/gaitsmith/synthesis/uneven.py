@@ -66,6 +66,8 @@ class Lie:
         ``(k,)`` whether an edge lies between them.
     heel_hangs
         ``(k,)`` whether there is no ground under the heel.
+    flattens
+        Whether soles are yet to land flatter uphill.
     """
 
     place: Float[np.ndarray, "k 2"]
@@ -75,6 +77,7 @@ class Lie:
     rise: Float[np.ndarray, "k"]
     stepped: Bool[np.ndarray, "k"]
     heel_hangs: Bool[np.ndarray, "k"]
+    flattens: bool = True
 
     def plane(self, i: int, at: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n"]:
         """Height over x,z ``at`` of the plane through footstep ``i``."""
@@ -90,10 +93,13 @@ class UnevenGenerator:
         Asked for the same steps, all footsteps level.
     ground
         What is walked on.
+    climbs
+        Whether its walk steps otherwise up and down hill by itself
+        (:class:`~gaitsmith.walks.model.ClimbingWalk`).
     """
 
-    def __init__(self, inner: StepGenerator, ground: Ground) -> None:
-        self._inner, self._ground = inner, ground
+    def __init__(self, inner: StepGenerator, ground: Ground, *, climbs: bool = False) -> None:
+        self._inner, self._ground, self._climbs = inner, ground, climbs
 
     def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
         """See :meth:`gaitsmith.synthesis.step.StepGenerator.prepare`."""
@@ -103,7 +109,13 @@ class UnevenGenerator:
         self, body: Body, state: WalkerState, steps: Sequence[PlannedStep]
     ) -> list[PreparedStep]:
         """See :meth:`gaitsmith.synthesis.step.BatchGenerator.prepare_all`."""
+        feet = list({id(f): f for s in steps for f in _feet(s)}.values())
+        number = {id(f): i for i, f in enumerate(feet)}
+        lie = _lie(steps, feet, number, body, self._ground)
         level = _levelled(steps)
+        if self._climbs:
+            lie = replace(lie, flattens=False)
+            level = _climbing(level, steps, lie, number)
         if isinstance(self._inner, BatchGenerator):
             prepared = self._inner.prepare_all(body, state, level)
         else:
@@ -111,9 +123,6 @@ class UnevenGenerator:
             for step in level:
                 prepared.append(self._inner.prepare(body, state, step))
                 state = prepared[-1].end
-        feet = list({id(f): f for s in steps for f in _feet(s)}.values())
-        number = {id(f): i for i, f in enumerate(feet)}
-        lie = _lie(steps, feet, number, body, self._ground)
         out: list[PreparedStep] = []
         for step, done in zip(steps, prepared, strict=True):
             pick = [number[id(f)] for f in (step.origin, step.stance, step.target)]
@@ -141,6 +150,24 @@ def _levelled(steps: Sequence[PlannedStep]) -> list[PlannedStep]:
 
     names = ("stance", "origin", "target", "before", "following")
     return [replace(s, **{n: on_floor(getattr(s, n)) for n in names}) for s in steps]
+
+
+def _climbing(
+    level: Sequence[PlannedStep],
+    steps: Sequence[PlannedStep],
+    lie: Lie,
+    number: dict[int, int],
+) -> list[PlannedStep]:
+    """Level steps that know how far the walk rises between their footsteps; edges are no slope."""
+
+    def climb(low: Footstep, high: Footstep) -> float:
+        a, b = number[id(low)], number[id(high)]
+        return 0.0 if lie.stepped[b] else float(lie.level[b] - lie.level[a])
+
+    return [
+        replace(flat, climbs=(climb(s.origin, s.stance), climb(s.stance, s.target)))
+        for flat, s in zip(level, steps, strict=True)
+    ]
 
 
 def _lie(
@@ -255,7 +282,8 @@ def _heel_rise(lie: Lie, foot: int, body: Body) -> float:
 def _landing_pitch(lands: float, lie: Lie, foot: int, body: Body) -> float:
     """Pitch with which a sole lands at a footstep that would land with ``lands`` on the level."""
     if not lie.stepped[foot]:
-        wanted = lands * (1.0 - _flatter(float(lie.slope[foot]))) if lands > 0.0 else lands
+        flatter = _flatter(float(lie.slope[foot])) if lie.flattens else 0.0
+        wanted = lands * (1.0 - flatter) if lands > 0.0 else lands
     else:
         rise = float(lie.rise[foot]) / body.leg_length
         deep = float(smoothstep((-rise - HEEL_FIRST) / (BALL_FIRST - HEEL_FIRST)))

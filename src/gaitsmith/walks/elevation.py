@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -59,6 +59,14 @@ class ElevationSet:
         What it is, and where from.
     constructed
         What was done instead of measuring; empty for measured data.
+    meta
+        ``(K,)`` radians of the toes against the ground as they turn about their tip, which the
+        paper's four angles do not say; empty: they lie until they leave.
+    toe_off
+        Phase of the stride at which the toes leave, after 1/2.
+    above
+        ``(K,)`` how far the person's own hips run above those that legs on such feet can reach,
+        over leg length: the product raises the heel there; empty: nowhere.
     """
 
     angles: Float[np.ndarray, "K 4"]
@@ -69,10 +77,20 @@ class ElevationSet:
     name: str = ""
     source: str = ""
     constructed: str = ""
+    meta: Float[np.ndarray, "K"] = field(default_factory=lambda: np.zeros(0))
+    toe_off: float = 0.62
+    above: Float[np.ndarray, "K"] = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         """Copy, check and freeze."""
         object.__setattr__(self, "angles", frozen_array("angles", self.angles, (None, 4)))
+        none = np.zeros(len(self.angles))
+        for name in ("meta", "above"):
+            own = getattr(self, name)
+            own = frozen_array(name, own if len(own) else none, (len(none),))
+            object.__setattr__(self, name, own)
+        if not 0.5 < number("toe_off", self.toe_off, "1") < 1.0:
+            raise InvalidInputError(f"toe_off must be between 1/2 and 1, got {self.toe_off:g}")
         if len(self.angles) < 8 or len(self.angles) % 2:
             raise InvalidInputError(
                 f"angles must have 8 or more samples, an even number, got {len(self.angles)}"
@@ -109,16 +127,7 @@ class ElevationSet:
         tilt, turn = 0.5 * (tangent + other), 0.5 * (tangent - other)
         angles = self.angles.copy()
         angles[:, PELVIS] = np.arctan(tilt + turn * (ratio / self.pelvis_ratio))
-        return ElevationSet(
-            angles,
-            ratio,
-            self.slope,
-            self.step_duration,
-            self.leg_length,
-            self.name,
-            self.source,
-            self.constructed,
-        )
+        return replace(self, angles=angles, pelvis_ratio=ratio)
 
     def planarity(self) -> float:
         """Share of the variance of foot, shank and thigh that lies in one plane.
@@ -162,6 +171,9 @@ def mixed(sets: Sequence[ElevationSet], weights: Float[np.ndarray, "n"]) -> Elev
         first.leg_length,
         name=" + ".join(f"{w:.2f} {s.name}" for w, s in zip(weights, sets, strict=True) if w),
         constructed="mixed",
+        meta=np.maximum(weights @ np.stack([s.meta for s in sets]), 0.0),
+        toe_off=mean([s.toe_off for s in sets]),
+        above=weights @ np.stack([s.above for s in sets]),
     )
 
 

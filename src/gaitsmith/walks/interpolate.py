@@ -56,6 +56,8 @@ class ElevInterp:
         Three or more, whose steps are not all in line.
     body
         Who steps. The sets are of angles, so another body's steps differ, and its weights.
+    others
+        As many sets of the leg that lands, where it does not walk as the one that stands.
 
     Notes
     -----
@@ -65,15 +67,21 @@ class ElevInterp:
     shortest way over all their weights: the same question always has the same answer.
     """
 
-    def __init__(self, sets: Sequence[ElevationSet], body: Body) -> None:
+    def __init__(
+        self,
+        sets: Sequence[ElevationSet],
+        body: Body,
+        others: Sequence[ElevationSet] | None = None,
+    ) -> None:
         self.sets = tuple(s.for_body(body) for s in sets)
+        landing = self.sets if others is None else tuple(s.for_body(body) for s in others)
         self.figure = PlanarFigure.of(body)
-        half = {len(s.angles) for s in self.sets}
-        if len(half) != 1:
-            raise InvalidInputError("all sets need equally many samples")
+        half = {len(s.angles) for s in (*self.sets, *landing)}
+        if len(half) != 1 or len(landing) != len(self.sets):
+            raise InvalidInputError("all sets need equally many samples, and each leg as many sets")
         middle = half.pop() // 2
         self._stance = np.stack([s.angles[middle] for s in self.sets])
-        self._swing = np.stack([s.angles[0] for s in self.sets])
+        self._swing = np.stack([s.angles[0] for s in landing])
         self._slope = np.array([s.slope for s in self.sets])
         #: ``(S, 2)`` step (length, height) of each set, meters.
         self.steps = self.step(np.eye(len(self.sets)))

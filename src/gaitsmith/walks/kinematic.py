@@ -277,6 +277,22 @@ def _late(
     return pitch, toes
 
 
+def bent_toes(
+    phase: Float[np.ndarray, "T"],
+    toe_off: float,
+    pitch: Float[np.ndarray, "T 2"],
+    meta: Float[np.ndarray, "T 2"],
+) -> Float[np.ndarray, "T 2"]:
+    """Toes against the soles of (stance, swing): as they lie, and straight again in the swing."""
+    bend = np.where(pitch < 0.0, -pitch - meta, 0.0)
+    rear = int(np.searchsorted(phase, toe_off, side="right"))
+    swing = (phase[rear:] - toe_off) / (1.0 - toe_off)
+    bend[rear:, 1] = bend[rear - 1, 1] * (1.0 - smoothstep(swing / TOES_STRAIGHT))
+    # toes that land first lie flat as they do
+    bend[rear:, 1] += max(-float(pitch[-1, 1]), 0.0) * smoothstep((swing - 0.5) / 0.5)
+    return bend
+
+
 def _sagittal(
     walk: WalkData,
     rear_pitch: Float[np.ndarray, "R"],
@@ -297,11 +313,7 @@ def _sagittal(
     meta[count - turning :, 0] = walk.meta.values[:turning, 0]
     pitch[:rear, 1], meta[:rear, 1] = rear_pitch, rear_meta
     pitch[rear:, 1] = walk.foot3.values[1:, 0]
-    bend = np.where(pitch < 0.0, -pitch - meta, 0.0)
-    swing = (phase[rear:] - walk.toe_off) / (1.0 - walk.toe_off)
-    bend[rear:, 1] = bend[rear - 1, 1] * (1.0 - smoothstep(swing / TOES_STRAIGHT))
-    # toes that land first lie flat as they do
-    bend[rear:, 1] += max(-float(pitch[-1, 1]), 0.0) * smoothstep((swing - 0.5) / 0.5)
+    bend = bent_toes(phase, walk.toe_off, pitch, meta)
     ankle = rolled_ankle(foot, pitch, meta)
     ankle[:, 1, 0] -= previous
     ankle[rear:, 1] = walk.ankle.values[1:]

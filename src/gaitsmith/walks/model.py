@@ -11,6 +11,8 @@ from gaitsmith._checks import frozen_array
 from gaitsmith.errors import InvalidInputError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
@@ -56,6 +58,7 @@ class StepRequest:
     kind: StepKind = "walk"
     previous_duration: float | None = None
     stride: int = 0
+    climbs: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,4 +142,19 @@ class StraightWalk(Protocol):
 
     def step(self, body: Body, request: StepRequest) -> SagittalStep:
         """Compute one step; raise InfeasibleStepError if ``body`` cannot take it."""
+        ...
+
+
+@runtime_checkable
+class ClimbingWalk(StraightWalk, Protocol):
+    """A straight walk that steps otherwise up and down hill.
+
+    It still answers as on the level: heights count from the line through the footsteps, soles
+    from the ground.
+    """
+
+    climbs: bool
+
+    def foresee(self, body: Body, requests: Sequence[StepRequest]) -> None:
+        """All ``requests`` are about to be asked: what they share may be found at once."""
         ...
