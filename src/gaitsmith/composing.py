@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +16,8 @@ from gaitsmith.errors import (
     InvalidInputError,
 )
 from gaitsmith.learning import CLIPS, body_of, learn
-from gaitsmith.style.composition import composition
-from gaitsmith.style.examples import examples_of
+from gaitsmith.style.composition import at_other_lengths, composition
+from gaitsmith.style.examples import Examples, examples_of
 from gaitsmith.style.recipe import (
     Recipe,
     Style,
@@ -26,10 +27,22 @@ from gaitsmith.style.recipe import (
 )
 from gaitsmith.style.restyle import rule_gait
 from gaitsmith.style.rules import RULES
-from gaitsmith.walks.learned import SUFFIX, LearnedGait, gait_of_cycle, read_gait
+from gaitsmith.walks.learned import (
+    SUFFIX,
+    LearnedGait,
+    gait_of_cycle,
+    grounded,
+    read_gait,
+    said_of,
+    with_others,
+)
+from gaitsmith.walks.stride import stride_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from gaitsmith.body.body import Body
+    from gaitsmith.gait.cycle import Cycle
 
 #: Licenses that forbid selling, however they say it.
 NON_COMMERCIAL = re.compile(r"non[\s-]?commercial|\bNC\b|\bBY-NC", re.IGNORECASE)
@@ -104,24 +117,37 @@ def _composed(
 ) -> LearnedGait:
     gaits = _gaits(asked, given, base)
     body = gaits[asked.input].body if asked.body is None else body_of(_beside(asked.body, base))
-    examples = examples_of({n: g.cycle for n, g in gaits.items()}, body)
+    examples = _ready(tuple(gaits), tuple(g.cycle for g in gaits.values()), body)
     found = composition(examples, asked.mix)
     for note in found.notes:
         if not note.startswith("leg weights"):
             warnings.warn(note, GaitsmithWarning, stacklevel=3)
     sources = [_source_of(n, asked.styles.get(n), g) for n, g in gaits.items()]
     title = name or asked.name
-    cycle = found.cycle.with_(
-        source="composed of " + ", ".join(s["name"] for s in sources),
-        license=license_of([s["license"] for s in sources]),
-    )
-    return gait_of_cycle(
-        cycle,
+    said = {
+        "source": "composed of " + ", ".join(s["name"] for s in sources),
+        "license": license_of([s["license"] for s in sources]),
+    }
+    gait = gait_of_cycle(
+        found.cycle.with_(**said),
         body,
         name=title,
         notes=found.notes,
+        feet=found.feet,
         recipe={**recipe_to_dict(asked), "name": title, "sources": sources},
     )
+    if not any(source.others for source in gaits.values()):
+        return gait
+    leveled = ((g.cycle, *(other.cycle for other in g.others)) for g in gaits.values())
+    others = at_other_lengths(examples, asked.mix, dict(zip(gaits, leveled, strict=True)))
+    brought = (grounded(mix.cycle.with_(**said), mix.feet) for mix in others)
+    return with_others(gait, [stride_of(cycle, body, feet) for cycle, feet in brought])
+
+
+@lru_cache(8)
+def _ready(names: tuple[str, ...], cycles: tuple[Cycle, ...], body: Body) -> Examples:
+    """Examples that were mixed just now are mixed again: a recipe is tuned by trying."""
+    return examples_of(dict(zip(names, cycles, strict=True)), body)
 
 
 def _with_styles(
@@ -199,15 +225,7 @@ def _gait(style: Style, base: Path) -> LearnedGait:
             f"{spec!r} is neither a built-in style ({known}), nor a gait file (*{SUFFIX}), nor a "
             f"clip ({', '.join(CLIPS)})"
         )
-    if style.license is None and style.source is None:
-        return gait
-    from dataclasses import replace
-
-    cycle = gait.cycle.with_(
-        license=gait.cycle.license if style.license is None else style.license,
-        source=gait.cycle.source if style.source is None else style.source,
-    )
-    return replace(gait, cycle=cycle)
+    return said_of(gait, license=style.license, source=style.source)
 
 
 def _beside(body: str | float, base: Path) -> str | float | Path:

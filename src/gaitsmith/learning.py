@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from gaitsmith import io
 from gaitsmith.body.presets import body_from
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from gaitsmith.synthesis.upper_body import Manner
     from gaitsmith.walks.learned import LearnedGait
 
+#: What can be learned from.
+Clip: TypeAlias = "str | Path | Motion | Markers"
 #: Suffixes of clips that can be learned from.
 CLIPS = (*(s for s in io.READERS if s != ".npz"), ".npz", *io.MARKER_READERS)
 #: Joints without which the upper body moves by rule.
@@ -37,7 +39,7 @@ _ARMS = frozenset(f"{side}{part}" for side in SIDES for part in ("UpperArm", "Lo
 
 
 def learn(
-    clip: str | Path | Motion | Markers,
+    clip: Clip | Sequence[Clip],
     *,
     name: str | None = None,
     symmetric: bool = False,
@@ -46,6 +48,7 @@ def learn(
     height: float | None = None,
     source: str | None = None,
     license: str = "",
+    lengths: int = 1,
 ) -> LearnedGait:
     """The gait of the person who walks in ``clip``.
 
@@ -53,6 +56,8 @@ def learn(
     ----------
     clip
         A file (``.bvh``, ``.amc``, ``.npz``; markers in ``.trc``, ``.csv``), a Motion or Markers.
+        Several motions of one person and style at different step lengths, the usual one first,
+        make one gait that walks each as it was: the nearest are generalized, and blended between.
     name
         What to call the gait; the file's name if not given.
     symmetric
@@ -65,14 +70,17 @@ def learn(
         Stature of who wears the markers, meters; else the markers tell.
     source, license
         Where the clip comes from and what may be done with it; kept in the gait.
+    lengths
+        Of how many strides of each clip, at most, to learn: of the usual one, and of others whose
+        step lengths differ by 5 % of a leg or more.
 
     Raises
     ------
     InfeasibleError
-        If the clip shows no 1.6 strides of straight, forward walking (markers with events: one
+        If a clip shows no 1.6 strides of straight, forward walking (markers with events: one
         stride), or if it is running.
     FileFormatError, OSError
-        If the file cannot be read.
+        If a file cannot be read.
 
     Examples
     --------
@@ -81,36 +89,50 @@ def learn(
     """
     from gaitsmith.walks.learned import learned_gait  # late: a walk of a built-in gait needs none
 
-    file = ""
-    if isinstance(clip, str | Path):
-        path = Path(clip)
-        file, clip = path.name, load_clip(path, unit)
-    title = name or Path(file).stem or "learned"
-    if isinstance(clip, Markers):
+    clips = [clip] if isinstance(clip, str | Path | Motion | Markers) else list(clip)
+    if not clips:
+        raise InvalidInputError("nothing to learn from: give a clip")
+    if lengths < 1:
+        raise InvalidInputError(f"lengths must be 1 or more, got {lengths!r}")
+    files = [Path(c).name if isinstance(c, str | Path) else "" for c in clips]
+    seen = [load_clip(Path(c), unit) if isinstance(c, str | Path) else c for c in clips]
+    title = name or Path(files[0]).stem or "learned"
+    told: dict[str, Any] = {
+        "symmetric": symmetric,
+        "events": events,
+        "source": ", ".join(f for f in files if f) if source is None else source,
+        "license": license,
+    }
+    if any(isinstance(one, Markers) for one in seen):
         from gaitsmith.gait.marker_legs import learn_from_markers
 
-        found = learn_from_markers(
-            clip,
-            height=height,
-            symmetric=symmetric,
-            events=events,
-            source=file if source is None else source,
-            license=license,
-        )
-        return learned_gait(found, name=title, clip=file, upper_body="rules")
-    from gaitsmith.gait.learn import learn_cycle
-    from gaitsmith.gait.person import person_of
+        if len(seen) > 1 or lengths > 1 or not isinstance(seen[0], Markers):
+            raise InvalidInputError("of markers one stride of one clip is learned")
+        found = learn_from_markers(seen[0], height=height, **told)
+        return learned_gait(found, name=title, clip=files[0], upper_body="rules")
+    if events is not None and len(seen) > 1:
+        raise InvalidInputError("events are seconds of one clip, but there are several")
+    return _of_motions([c for c in seen if isinstance(c, Motion)], title, files[0], lengths, told)
 
-    person = person_of(clip, name=title)
-    found = learn_cycle(
-        person,
-        symmetric=symmetric,
-        events=events,
-        source=file if source is None else source,
-        license=license,
-    )
-    whole = set(person.roles) >= _ARMS
-    return learned_gait(found, name=title, clip=file, upper_body="measured" if whole else "rules")
+
+def _of_motions(
+    motions: list[Motion], title: str, file: str, lengths: int, told: dict[str, Any]
+) -> LearnedGait:
+    """The gait of who walks in them, of the first by habit."""
+    from gaitsmith.gait.learn import learn_cycles
+    from gaitsmith.gait.person import person_of
+    from gaitsmith.style.retarget import on_body
+    from gaitsmith.walks.learned import grounded, learned_gait, with_others
+    from gaitsmith.walks.stride import stride_of
+
+    people = [person_of(motion, name=title) for motion in motions]
+    usual, *others = (found for person in people for found in learn_cycles(person, lengths, **told))
+    whole = all(set(person.roles) >= _ARMS for person in people)
+    gait = learned_gait(usual, name=title, clip=file, upper_body="measured" if whole else "rules")
+    if not others:
+        return gait
+    brought = (grounded(on_body(found.cycle, gait.body)) for found in others)
+    return with_others(gait, [stride_of(cycle, gait.body, feet) for cycle, feet in brought])
 
 
 def load_clip(path: Path, unit: str | None = None) -> Motion | Markers:

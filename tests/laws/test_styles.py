@@ -7,10 +7,13 @@ from functools import cache
 
 import numpy as np
 import pytest
-from judge import broken
+from judge import broken, posed
 from people import person
 from styles import apart, slide
 
+from gaitsmith.body.masses import center_of_mass, segments_of
+from gaitsmith.body.rig import skeleton_of
+from gaitsmith.conventions import GRAVITY
 from gaitsmith.errors import GaitsmithWarning, UnknownNameError
 from gaitsmith.gait.neutral import subject
 from gaitsmith.geometry.rotations import multiply, rotate
@@ -164,6 +167,30 @@ def walked(name, way, body):
         return walk(path=WAYS[way], gait=name, body=body_of(body), fps=120)
 
 
+@pytest.mark.parametrize(
+    "radius", [1.2, *(pytest.param(r, marks=pytest.mark.slow) for r in (2.0, 5.0))]
+)
+@pytest.mark.parametrize(
+    "name", ["sneaky", *(pytest.param(n, marks=pytest.mark.slow) for n in STYLES if n != "sneaky")]
+)
+def test_it_leans_as_the_curve_asks(name, radius):
+    """[KB92a] Eq. 4 to 10 %, low walks too."""
+    body = person(1.75)
+    path = Path.arc(radius, max(12.0 / radius, 4.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", GaitsmithWarning)  # of curves, which shorten steps
+        motion = walk(path=path, gait=name, body=body, fps=120, start="walk", stop="walk")
+    positions, _, _ = posed(motion)
+    mass = center_of_mass(motion.skeleton, positions, segments_of(body))
+    labels, center = motion.labels, np.array([radius, 0.0])
+    a, b = np.round(labels.footstep_time[[6, 10]] * 120).astype(int)
+    out = np.hypot(*(mass[a:b, [0, 2]] - center).T).mean()
+    feet = np.hypot(*(labels.footstep_position[6:10, [0, 2]] - center).T).mean()
+    speed = np.hypot(*np.diff(mass[a:b, [0, 2]], axis=0).T).mean() * 120
+    lean = np.arctan((feet - out) / mass[a:b, 1].mean())
+    assert lean == pytest.approx(np.arctan(speed**2 / (GRAVITY * out)), rel=0.1)
+
+
 def strides_of(motion, right):
     """Local rotations of the joints but the root at 32 phases of every inner left stride."""
     labels, out = motion.labels, []
@@ -178,19 +205,43 @@ def strides_of(motion, right):
 @pytest.mark.slow
 def test_styles_survive_curves():
     """A stride on a tight circle or an S is nearest to the straight stride of its own style."""
-    body, hits = person(1.75), []
-    straight = {
-        name: strides_of(walk(distance=9.0, gait=name, body=body, fps=120), 0.5)[1]
-        for name in STYLES
-    }
-    centers = np.stack(list(straight.values()))
-    for name in STYLES:
-        for way in WAYS:
-            for stride in strides_of(walked(name, way, "1.75 m"), 0.5):
-                away = (apart(centers, stride) ** 2).sum((1, 2))
-                hits.append(STYLES[int(away.argmin())] == name)
+    hits = recognized()
     assert len(hits) > 60
     assert np.mean(hits) >= 0.9
+
+
+@pytest.mark.slow
+def test_legs_alone_tell_the_style_on_curves():
+    """Though they lean, turn and take shorter steps there."""
+    assert np.mean(recognized(("UpperLeg", "LowerLeg", "Foot", "Toes"))) >= 0.9
+
+
+def recognized(joints=("",)):
+    """Whether each stride on curves is nearest to its own style's straight one in ``joints``."""
+    centers, strides = in_strides()
+    names = skeleton_of(person(1.75)).names[1:]
+    kept = [i for i, name in enumerate(names) if name.endswith(joints)]
+    hits = []
+    for name, stride in strides:
+        away = (apart(centers[:, :, kept], stride[:, kept]) ** 2).sum((1, 2))
+        hits.append(STYLES[int(away.argmin())] == name)
+    return hits
+
+
+@cache
+def in_strides():
+    """The straight stride of each style, and every stride on curves with its style."""
+    body = person(1.75)
+    straight = [
+        strides_of(walk(distance=9.0, gait=name, body=body, fps=120), 0.5)[1] for name in STYLES
+    ]
+    curved = [
+        (name, stride)
+        for name in STYLES
+        for way in WAYS
+        for stride in strides_of(walked(name, way, "1.75 m"), 0.5)
+    ]
+    return np.stack(straight), curved
 
 
 def test_built_in_gaits_are_a_table():

@@ -10,7 +10,9 @@ from rigs import bare
 from gaitsmith.body.sole import roll
 from gaitsmith.gait.learn import learn_cycle, standing_feet
 from gaitsmith.gait.person import person_of
-from gaitsmith.walks.planting import CURL, SAMPLES, plant
+from gaitsmith.walks import planting_fit
+from gaitsmith.walks.planting import plant
+from gaitsmith.walks.planting_fit import CURL, SAMPLES, SPLINES, Fit
 
 WAYS = {
     "walk": Puppet(),
@@ -120,3 +122,38 @@ def test_the_shortest_double_support_is_kept():
     planted = plant(cycle, found.body, place=feet.place[:, 1], width=0.1)
     other = (planted.marks[::-1, 4] - planted.marks[:, 4]) % 1.0
     np.testing.assert_allclose(planted.marks[:, 3] - other, 0.02, atol=1e-9)
+
+
+def test_the_system_is_that_of_the_residuals(monkeypatch):
+    """Slope and Gauss-Newton matrix, put together spline by spline, against dense ones."""
+    fits = []
+    solved = Fit.solved
+    monkeypatch.setattr(Fit, "solved", lambda fit: fits.append(fit) or solved(fit))
+    found = learn_cycle(person_of(bare(WAYS["limp"].clip(5.0))))
+    feet = standing_feet(found.cycle)
+    plant(found.cycle, found.body, place=feet.place[:, 1], width=0.1)
+    fit = fits[0]
+    x = 0.01 * np.random.default_rng(3).normal(size=(6, SPLINES))
+
+    def residuals(x):
+        bend = np.eye(SPLINES) - 0.5 * (
+            np.roll(np.eye(SPLINES), 1, 0) + np.roll(np.eye(SPLINES), -1, 0)
+        )
+        per = np.sqrt(SAMPLES / SPLINES)
+        sizes, bends = np.array(planting_fit._SIZE)[:, None], np.array(planting_fit._BEND)[:, None]
+        return np.concatenate(
+            [fit._away(x).ravel(), (per * sizes * x).ravel(), (per * bends * (x @ bend.T)).ravel()]
+        )
+
+    here, tiny = residuals(x), 1e-6
+    # each angle goes with a spline's value there, and the spline with its 30 numbers
+    angles = np.einsum("nrk,ni->nrki", fit._slopes(x), fit.basis).reshape(6 * SAMPLES, -1)
+    rest = np.stack([residuals(e.reshape(x.shape)) for e in np.eye(x.size)], axis=-1)
+    dense = np.concatenate([angles, rest[6 * SAMPLES :]])
+    value, slope, normal = fit._system(x, fit._away(x))
+    assert value == pytest.approx(here @ here, rel=1e-12)
+    np.testing.assert_allclose(slope, dense.T @ here, atol=1e-9)
+    np.testing.assert_allclose(normal, dense.T @ dense, atol=1e-9)
+    for k in range(2 * SPLINES):  # of the hips, whose splines nothing bounds
+        nudged = x + tiny * np.eye(1, x.size, k).reshape(x.shape)
+        np.testing.assert_allclose((residuals(nudged) - here) / tiny, dense[:, k], atol=1e-4)

@@ -145,6 +145,18 @@ def test_a_strong_pull_leaves_the_asked_weights(found):
         logs = np.einsum("jk,jkn->nk", change, one.keys) @ one.mix.T
         return np.degrees(np.linalg.norm(logs.reshape(len(logs), -1, 3), axis=-1).max())
 
+    def usual(root, legs):
+        """Root mean square of what a pull of 1e6 square centimeters leaves, degrees."""
+        best = leg_weights(rule_library(), exchange(root, legs), found, at="keys", damping=1e2)
+        out = []
+        for part in ("left_leg", "right_leg"):
+            asked = np.array([[float(n == legs)] for n in rule_library().names])
+            one = found[part]
+            logs = np.einsum("jk,jkn->nk", best.weights[part] - asked, one.keys) @ one.mix.T
+            out.append((logs.reshape(len(logs), -1, 3) ** 2).sum(-1).mean())
+        return np.degrees(np.sqrt(np.mean(out)))
+
+    assert max(usual(*pair) for pair in PAIRS) <= 0.2
     strong, stronger = away(1e2), away(1e3)
     assert strong < 1.0
     assert stronger == pytest.approx(0.1 * strong, rel=0.1)

@@ -10,11 +10,14 @@ from gaitsmith.errors import InfeasibleError, InvalidInputError
 from gaitsmith.gait.cycle import Cycle
 from gaitsmith.gait.neutral import subject
 from gaitsmith.geometry.rotations import exp, multiply
+from gaitsmith.motion.kinematics import forward_kinematics
 from gaitsmith.style.components import decompose
 from gaitsmith.style.examples import examples_of
 from gaitsmith.style.mix import mixed
 from gaitsmith.style.parts import PARTS
+from gaitsmith.style.restyle import restyled
 from gaitsmith.style.retarget import stride_by_feet
+from gaitsmith.style.rules import RULES
 from gaitsmith.style.weights import Mix, PartMix
 
 ENGINES = [("dense", "cubic"), ("keys", "cubic"), ("keys", "slerp")]
@@ -240,3 +243,23 @@ def test_a_mix_whose_feet_do_not_walk_is_refused():
         mixed(library(), Mix({"s0": 1.0}, parts={"legs": PartMix({"s0": -0.5})}))
     with pytest.raises(InfeasibleError, match="in order"):
         mixed(library(), Mix({"s0": 30.0, "s3": -29.0}))
+
+
+def arm_in_space(cycle, side="left"):
+    """Mean direction of the upper arm: forward and to its side, over down."""
+    places, _ = forward_kinematics(cycle.skeleton, cycle.center, cycle.rotations)
+    index = cycle.skeleton.index
+    bone = (places[:, index(f"{side}LowerArm")] - places[:, index(f"{side}UpperArm")]).mean(axis=0)
+    return bone[2] / -bone[1], bone[0] / -bone[1]
+
+
+@pytest.mark.parametrize("trunk", ["sad", "sneaky"])
+def test_arms_hang_as_they_did_on_another_trunk(trunk):
+    """Arms of who leans back do not trail behind who leans forward, nor stand off to the side."""
+    rules = {name: restyled(RULES[name]) for name in ("proud", trunk)}
+    examples = examples_of(rules, subject())
+    mix = Mix({trunk: 1.0}, parts={"arms": PartMix({"proud": 1.0})})
+    own = examples.cycles[examples.index("proud")]
+    out = mixed(examples, mix).cycle
+    for side in ("left", "right"):
+        np.testing.assert_allclose(arm_in_space(out, side), arm_in_space(own, side), atol=0.06)

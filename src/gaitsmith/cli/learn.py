@@ -13,7 +13,13 @@ if TYPE_CHECKING:
 
 
 def learn(
-    clip: Annotated[Path, typer.Argument(help="*.bvh, *.amc or *.npz; markers in *.trc or *.csv.")],
+    clip: Annotated[
+        list[Path],
+        typer.Argument(
+            help="*.bvh, *.amc or *.npz; markers in *.trc or *.csv. Several of one person at "
+            "different step lengths: the usual one first."
+        ),
+    ],
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="FILE.gait.json", help="File to write.")
     ],
@@ -35,6 +41,9 @@ def learn(
     source: Annotated[
         str | None, typer.Option(help="Where CLIP comes from; kept. Else its name.")
     ] = None,
+    lengths: Annotated[
+        int, typer.Option(help="Strides of different length to learn of each CLIP, at most.")
+    ] = 1,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Learn the gait of the person who walks in CLIP."""
@@ -56,6 +65,7 @@ def learn(
             height=height,
             source=source,
             license=license,
+            lengths=lengths,
         )
     place([(lambda path: write_gait(gait, path), output)])
     report(gait, output, said, as_json=json)
@@ -77,6 +87,12 @@ def report(gait: LearnedGait, output: Path, said: list[str], *, as_json: bool) -
         f"{gait.name}: stride {facts['stride_length_m']:.3f} m in {facts['duration_s']:.3f} s, "
         f"{facts['speed_mps']:.2f} m/s at {facts['cadence_spm']:.1f} steps/min"
     )
+    for other in gait.others:
+        cycle = other.cycle
+        print(
+            f"and: stride {cycle.stride_length:.3f} m in {cycle.duration:.3f} s, "
+            f"{cycle.speed:.2f} m/s"
+        )
     print(f"wrote {output}")
 
 
@@ -90,4 +106,7 @@ def facts_of(gait: LearnedGait) -> dict[str, Any]:
         *("cadence_spm", "step_lengths_m", "step_width_m", "toe_out_deg", "events"),
         *("upper_body", "clip", "notes"),
     )
-    return {key: data[key] for key in kept} | {"strides": data["cycle"]["strides"]}
+    facts = {key: data[key] for key in kept} | {"strides": data["cycle"]["strides"]}
+    if gait.others:
+        facts["other_stride_lengths_m"] = [other["stride_length_m"] for other in data["others"]]
+    return facts

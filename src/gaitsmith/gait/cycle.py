@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaitsmith._checks import frozen_array, positive
+from gaitsmith.conventions import SIDES
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.curves import hermite
 from gaitsmith.geometry.rotations import sign_continuous
+from gaitsmith.motion.kinematics import forward_kinematics, sole_positions
+from gaitsmith.motion.skeleton import Skeleton
 
 if TYPE_CHECKING:
     from jaxtyping import Float
-
-    from gaitsmith.motion.skeleton import Skeleton
 
 #: Events of one foot, in the order of ``Cycle.events``.
 EVENTS = ("heel_strike", "foot_flat", "heel_off", "toe_off")
@@ -94,6 +96,29 @@ class Cycle:
         """Meters per second."""
         return self.stride_length / self.duration
 
+    @cached_property
+    def legs(self) -> Cycle:
+        """The same with those joints alone that carry a sole: enough for who asks for feet."""
+        skeleton = self.skeleton
+        if skeleton.soles is None:
+            return self
+        carry = {joint for foot in skeleton.sole_joints for joint in foot}
+        for joint in range(len(skeleton) - 1, 0, -1):  # parents come first
+            if joint in carry:
+                carry.add(skeleton.parents[joint])
+        kept = sorted(carry)
+        if len(kept) == len(skeleton):
+            return self
+        return self.with_(
+            skeleton=Skeleton(
+                names=tuple(skeleton.names[j] for j in kept),
+                parents=(-1, *(kept.index(skeleton.parents[j]) for j in kept[1:])),
+                offsets=skeleton.offsets[kept],
+                soles=skeleton.soles,
+            ),
+            rotations=self.rotations[:, kept],
+        )
+
     def at(
         self, stride_phase: Float[np.ndarray, "n"]
     ) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, "n joints 4"]]:
@@ -101,7 +126,32 @@ class Cycle:
 
         Periodic cubic through the samples; exact at them.
         """
-        count, joints = len(self.center), len(self.skeleton)
+        grid, table, slopes = self._table
+        joints = len(self.skeleton)
+        share = np.asarray(stride_phase, dtype=np.float64) / self.strides
+        values = hermite(grid, table, slopes, share % 1.0)
+        # each component contiguous: those who read it work on them one by one
+        turned = np.ascontiguousarray(values.T)[3:].reshape(joints, 4, -1)
+        x, y, z, w = turned.transpose(1, 0, 2)
+        turned /= np.sqrt(x * x + y * y + z * z + w * w)[:, None]
+        return values[:, :3], turned.transpose(2, 0, 1)
+
+    @cached_property
+    def feet(self) -> tuple[Float[np.ndarray, "n 2 3"], Float[np.ndarray, "n 2 3 3"]]:
+        """Ankles and sole points of [left, right] at the samples of one stride, less the travel."""
+        legs = self.legs
+        count = len(self.center) // self.strides
+        center, turned = legs.at(np.arange(count) / count)
+        places, world = forward_kinematics(legs.skeleton, center, turned)
+        ankles = np.stack([places[:, legs.skeleton.index(f"{s}Foot")] for s in SIDES], axis=1)
+        return ankles, sole_positions(legs.skeleton, places, world)
+
+    @cached_property
+    def _table(
+        self,
+    ) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n c"], Float[np.ndarray, "n c"]]:
+        """Loop phases, center and rotations there, and their slopes."""
+        count = len(self.center)
         ends = np.where((self.rotations[-1] * self.rotations[0]).sum(-1) < 0.0, -1.0, 1.0)
         # two samples of the neighboring strides on both sides give the slopes at the seam
         before = self.rotations[-2:] * ends[:, None]
@@ -110,11 +160,4 @@ class Cycle:
         center = np.concatenate([self.center[-2:], self.center, self.center[:3]])
         table = np.concatenate([center, quats], axis=1)
         grid = np.arange(-2, count + 3) / count
-        slopes = np.gradient(table, 1.0 / count, axis=0)
-        share = np.asarray(stride_phase, dtype=np.float64) / self.strides
-        values = hermite(grid, table, slopes, share % 1.0)
-        # each component contiguous: those who read it work on them one by one
-        turned = np.ascontiguousarray(values.T)[3:].reshape(joints, 4, -1)
-        x, y, z, w = turned.transpose(1, 0, 2)
-        turned /= np.sqrt(x * x + y * y + z * z + w * w)[:, None]
-        return values[:, :3], turned.transpose(2, 0, 1)
+        return grid, table, np.gradient(table, 1.0 / count, axis=0)

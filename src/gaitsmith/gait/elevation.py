@@ -65,6 +65,7 @@ def elevation_of(cycle: Cycle) -> ElevationData:
     The re-timing is linear between heel strikes; the walker of [SM01] takes one leg half a
     stride behind the other.
     """
+    cycle = cycle.legs
     right = float(cycle.events[1, 0])
     own = np.arange(SAMPLES) / SAMPLES
     skeleton = cycle.skeleton
@@ -74,16 +75,18 @@ def elevation_of(cycle: Cycle) -> ElevationData:
         + np.linalg.norm(skeleton.offsets[index("leftFoot")])
     )
     out = np.empty((2, SAMPLES, 4))
+    even = np.concatenate([own, own + 0.5])
+    phase = np.floor(even) + np.interp(even % 1.0, [0.0, 0.5, 1.0], [0.0, right, 1.0])
+    center, turned = cycle.at(phase)
+    places, world = forward_kinematics(skeleton, center, turned)
+    ground = sole_positions(skeleton, places, world)
+    tops = center + rotate(world[:, 0], _PELVIS_TOP * leg * UP)
     for side, name in enumerate(SIDES):
-        even = own + 0.5 * side
-        phase = np.floor(even) + np.interp(even % 1.0, [0.0, 0.5, 1.0], [0.0, right, 1.0])
-        center, turned = cycle.at(phase)
-        positions, world = forward_kinematics(skeleton, center, turned)
-        soles = sole_positions(skeleton, positions, world)
+        here = slice(side * SAMPLES, (side + 1) * SAMPLES)
+        positions, soles, top = places[here], ground[here], tops[here]
         hip, knee, ankle = (
             positions[:, index(f"{name}{part}")] for part in ("UpperLeg", "LowerLeg", "Foot")
         )
-        top = center + rotate(world[:, 0], _PELVIS_TOP * leg * UP)
         segments = (
             soles[:, side, BALL] - soles[:, side, HEEL],
             ankle - knee,

@@ -19,7 +19,7 @@ from gaitsmith.gait.events import FootPath, Stance, stances
 from gaitsmith.gait.loop import average, closed, mirrored
 from gaitsmith.gait.strides import Clip, Span, gap_between, score, spans_of, straight, walked
 from gaitsmith.geometry.rotations import about, multiply, rotate, sign_continuous
-from gaitsmith.motion.kinematics import forward_kinematics, motion_kinematics, sole_positions
+from gaitsmith.motion.kinematics import motion_kinematics, sole_positions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,6 +37,8 @@ SAMPLES = 128
 HARMONICS = 10
 #: Radians that a stride's arms may be apart at its ends and still be closed within one stride.
 _ARMS_GAP = float(np.radians(25.0))
+#: Leg lengths by which strides that are learned of one clip differ.
+DIFFERENT = 0.1
 #: Least double support after each heel strike, share of the stride: 4 % in all.
 _DOUBLE = 0.02
 #: Least share of the stride between two events of a foot.
@@ -103,10 +105,45 @@ def learn_cycle(
     InfeasibleError
         If the clip holds no 1.6 strides of straight, forward walking, or if it is running.
     """
+    return learn_cycles(
+        person, 1, symmetric=symmetric, events=events, source=source, license=license
+    )[0]
+
+
+def learn_cycles(
+    person: Person,
+    most: int,
+    *,
+    symmetric: bool = False,
+    events: Sequence[Stance] | None = None,
+    source: str = "",
+    license: str = "",
+) -> list[Learned]:
+    """Up to ``most`` closed strides of ``person`` with different step lengths.
+
+    The first is that of :func:`learn_cycle`; the others are those that close best of what differs
+    in length by :data:`DIFFERENT` from all before.
+    """
     notes: list[str] = []
     clip = _prepared(person, events, notes)
     spans = straight(clip, spans_of(clip.stances), notes)
     spans = walked(clip, spans)
+    usual = _usual(clip, spans, symmetric, list(notes), source, license)
+    out, lengths = [usual], [usual.cycle.stride_length]
+    names = clip.motion.skeleton.names[1:]
+    for span in sorted(spans, key=lambda s: gap_between(clip, s.first, s.last, names)):
+        length = clip.length(span.first, span.last)
+        near = DIFFERENT * clip.body.leg_length
+        if len(out) < most and min(abs(length - other) for other in lengths) >= near:
+            out.append(_learned(clip, span, span.last, 1, symmetric, [], source, license))
+            lengths.append(length)
+    return out
+
+
+def _usual(
+    clip: Clip, spans: list[Span], symmetric: bool, notes: list[str], source: str, license: str
+) -> Learned:
+    """The stride that closes best and is most usual; two where the arms need them."""
     best = min(spans, key=lambda s: score(clip, s, spans))
     strides, last = 1, best.last
     gap = gap_between(clip, best.first, best.last, _ARMS)
@@ -366,27 +403,34 @@ class Standing:
     heading: Float[np.ndarray, "2"]
     height: float
 
+    def moved(self, by: Float[np.ndarray, "3"]) -> Standing:
+        """Of the same stride with its center moved."""
+        return Standing(self.place + by[[0, 2]], self.heading, self.height + float(by[1]))
 
-def standing_feet(cycle: Cycle) -> Standing:
+
+def standing_feet(cycle: Cycle, *, stride_length: float | None = None) -> Standing:
     """Where and how both feet stand flat in ``cycle``, meters and radians.
 
     N of the left foot's stance at stride phase 0, of the right one's within the same stride;
-    ``height`` is that of the soles, the mean of both feet.
+    ``height`` is that of the soles, the mean of both feet. ``stride_length``: instead of the
+    cycle's own.
     """
     count = len(cycle.center) // cycle.strides
+    ankles, soles = cycle.feet
+    # a stance may begin in this stride and end in the next
     phase = np.arange(2 * count) / count
-    center, turned = cycle.at(phase)
-    center = center + phase[:, None] * np.array([0.0, 0.0, cycle.stride_length])
-    positions, world = forward_kinematics(cycle.skeleton, center, turned)
-    soles = sole_positions(cycle.skeleton, positions, world)
+    length = cycle.stride_length if stride_length is None else stride_length
+    ahead = (phase * length)[:, None, None] * np.array([0.0, 0.0, 1.0])
+    ankles = np.concatenate([ankles, ankles]) + ahead
+    soles = np.concatenate([soles, soles]) + ahead[..., None, :]
     place, heading, heights = np.empty((2, 2)), np.empty(2), np.empty(2)
-    for side, name in enumerate(SIDES):
+    for side in range(len(SIDES)):
         strike, flat, off, _ = cycle.events[side]
         begin = strike + (flat - strike) % 1.0
         stands = (phase >= begin) & (phase <= begin + (off - flat) % 1.0)
         heel, ball = soles[stands, side, HEEL], soles[stands, side, BALL]
         along = (ball - heel) / np.linalg.norm(ball - heel, axis=-1, keepdims=True)
-        ankle = positions[stands, cycle.skeleton.index(f"{name}Foot")]
+        ankle = ankles[stands, side]
         n = heel + ((ankle - heel) * along).sum(-1, keepdims=True) * along
         place[side] = n.mean(0)[[0, 2]]
         heading[side] = np.arctan2(along[:, 0].mean(), along[:, 2].mean())

@@ -48,6 +48,10 @@ class Clip:
         a, b = round(stance.foot_flat * rate), round(stance.heel_off * rate)
         return self.soles[a : max(b, a) + 1, stance.side, BALL].mean(0)
 
+    def length(self, first: Stance, last: Stance) -> float:
+        """From where one stands to where the other does, over the ground, meters."""
+        return float(np.linalg.norm((self.foot(last) - self.foot(first))[[0, 2]]))
+
     def heading(self, time: float) -> float:
         """Of the pelvis."""
         _, turned = read_pose(self.motion, np.array([time]))

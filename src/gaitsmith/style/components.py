@@ -15,8 +15,8 @@ import numpy as np
 
 from gaitsmith._checks import one_of
 from gaitsmith.errors import InvalidInputError
+from gaitsmith.geometry.threads import on_one_thread
 from gaitsmith.style.parts import PARTS
-from gaitsmith.style.threads import on_one_thread
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float

@@ -119,7 +119,9 @@ class Examples:
         return float(size.max()), f"{self.skeleton.names[joint]} of {self.names[j]!r}"
 
 
-def examples_of(cycles: Mapping[str, Cycle], body: Body) -> Examples:
+def examples_of(
+    cycles: Mapping[str, Cycle], body: Body, *, reference: Float[np.ndarray, "J 4"] | None = None
+) -> Examples:
     """``cycles`` made ready to be mixed, on ``body``.
 
     Parameters
@@ -128,6 +130,8 @@ def examples_of(cycles: Mapping[str, Cycle], body: Body) -> Examples:
         By name, on any skeletons.
     body
         Whose walk the mix will be; cycles of other people are brought to it.
+    reference
+        That of other examples, which weights should mean the same with; else their own.
 
     Raises
     ------
@@ -147,6 +151,8 @@ def examples_of(cycles: Mapping[str, Cycle], body: Body) -> Examples:
             brought.append(on_body(cycle, body))
         except InfeasibleError as error:
             raise InfeasibleError(f"example {name!r}: {error}") from None
+    if reference is not None:
+        return Examples(tuple(cycles), tuple(brought), tuple(timings), body, reference)
     strides = max(cycle.strides for cycle in brought)
     keys = np.concatenate(
         [

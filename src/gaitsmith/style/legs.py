@@ -18,12 +18,12 @@ from gaitsmith._checks import one_of
 from gaitsmith.conventions import SIDES
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.geometry.rotations import exp, multiply, rotate, to_matrix
+from gaitsmith.geometry.threads import on_one_thread
 from gaitsmith.motion.kinematics import forward_kinematics
 from gaitsmith.style.align import mapped, slots_over
 from gaitsmith.style.interpolation import periodic_cubic
 from gaitsmith.style.mix import mixed_timing, part_weights
 from gaitsmith.style.ranks import displacements, ranked
-from gaitsmith.style.threads import on_one_thread
 from gaitsmith.style.weights import vector
 
 if TYPE_CHECKING:
@@ -43,8 +43,9 @@ INSTANTS = ("stance", "keys")
 #: Instants of a stance at which feet are compared, and of a swing; how much less the way of a
 #: swinging foot counts than the place of one that stands.
 STANCE, SWING, SHAPE = 24, 12, 0.25
-#: Key frames of a stride in which a foot bears, heel strike and toe-off with them.
-KEYS = 7
+#: Key frames of a stride in which a foot bears, from its heel strike on: as it leaves it bears no
+#: more. Where feet are compared all through, together they count as so many.
+KEYS, LIKE = 6, 7
 _ROUNDS, _STILL = 40, 1e-10
 
 
@@ -165,16 +166,16 @@ class _Feet:
         self.found, self.start, self.rows, self.damping = found, start, rows, damping
         timing = mixed_timing(examples, mix)
         strike, off = timing.contacts[side, 0], timing.contacts[side, 3]
-        if at_keys:  # the paper's: from heel strike to toe-off
+        if at_keys:  # the paper's
             at = timing.slots[(np.arange(KEYS) + 4 * side) % 8]
             weight = np.ones(KEYS)
         else:
             stance = np.linspace(strike, off, STANCE + 1)[:-1]
             u = (np.arange(SWING) + 1.0) / (SWING + 1.0)
             at = np.concatenate([stance, off + u * (strike + 1.0 - off)])
-            # as if at as many instants as key frames; none where the swing begins and ends
-            swing = SHAPE * np.sin(np.pi * u) ** 2 * np.sqrt(KEYS / SWING)
-            weight = np.concatenate([np.full(STANCE, np.sqrt(KEYS / STANCE)), swing])
+            # none where the swing begins and ends
+            swing = SHAPE * np.sin(np.pi * u) ** 2 * np.sqrt(LIKE / SWING)
+            weight = np.concatenate([np.full(STANCE, np.sqrt(LIKE / STANCE)), swing])
         self.stands = slice(0, KEYS if at_keys else STANCE)
         slots = slots_over(timing.slots, examples.strides)
         led = periodic_cubic(slots, float(examples.strides), at)

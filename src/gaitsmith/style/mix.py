@@ -18,6 +18,7 @@ from gaitsmith.gait.learn import standing_feet, symmetrized
 from gaitsmith.geometry.rotations import exp, inverse, log, multiply
 from gaitsmith.style.align import Timing, mapped, phases, slots_over
 from gaitsmith.style.examples import AMBIGUOUS
+from gaitsmith.style.hanging import with_hanging_arms
 from gaitsmith.style.interpolation import periodic_cubic, periodic_linear, periodic_slerp
 from gaitsmith.style.parts import PARTS
 from gaitsmith.style.retarget import stride_by_feet
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
     from jaxtyping import Float
 
+    from gaitsmith.gait.learn import Standing
     from gaitsmith.style.components import Components
     from gaitsmith.style.examples import Examples
     from gaitsmith.style.weights import Mix
@@ -52,12 +54,15 @@ class Mixed:
         On the examples' skeleton; closed.
     timing
         Of its feet: the mean of the examples' by the weights of the root.
+    feet
+        How they stand in it.
     notes
         What was changed or should be looked at.
     """
 
     cycle: Cycle
     timing: Timing
+    feet: Standing
     notes: tuple[str, ...]
 
 
@@ -95,7 +100,11 @@ def mixed(
     timing = mixed_timing(examples, mix)
     strides = _strides(examples, mix, weights)
     frame = _Frame(examples, mix, timing, strides, components, weights, dict(legs or {}))
-    center, turned = frame.dense() if mix.engine == "dense" else frame.keyed()
+    if mix.engine == "dense":
+        center, turned = frame.dense()
+        turned = with_hanging_arms(examples, frame.root, weights, turned)
+    else:
+        center, turned = frame.keyed()
     return _walking(examples, mix, timing, strides, center, turned, notes)
 
 
@@ -402,6 +411,7 @@ def _walking(
             f"take {SLOWEST_STEPS:g} to {FASTEST_STEPS:g}, so it walks at "
             f"{length / duration:.2f} m/s"
         )
-    cycle = cycle.with_(stride_length=length, duration=duration)
-    sinks = standing_feet(cycle).height - float(shares @ examples.heights)
-    return Mixed(cycle.with_(center=cycle.center - [0.0, sinks, 0.0]), timing, tuple(notes))
+    feet = standing_feet(cycle, stride_length=length)
+    lift = np.array([0.0, float(shares @ examples.heights) - feet.height, 0.0])
+    cycle = cycle.with_(center=cycle.center + lift, stride_length=length, duration=duration)
+    return Mixed(cycle, timing, feet.moved(lift), tuple(notes))

@@ -10,7 +10,6 @@ from gaitsmith.body.rig import skeleton_of
 from gaitsmith.conventions import BALL, SIDES
 from gaitsmith.gait.learn import standing_feet
 from gaitsmith.geometry.rotations import IDENTITY, exp, log, multiply
-from gaitsmith.motion.kinematics import forward_kinematics, sole_positions
 from gaitsmith.motion.roles import humanoid_roles
 
 if TYPE_CHECKING:
@@ -93,9 +92,7 @@ def stride_by_feet(cycle: Cycle) -> float:
     """
     count = len(cycle.center) // cycle.strides
     phase = np.arange(count) / count
-    center, turned = cycle.at(phase)
-    positions, world = forward_kinematics(cycle.skeleton, center, turned)
-    balls = sole_positions(cycle.skeleton, positions, world)[:, :, BALL, 2]
+    balls = cycle.feet[1][:, :, BALL, 2]
     slopes, weights = np.empty(2), np.empty(2)
     for side in range(len(SIDES)):
         strike, flat, off, _ = cycle.events[side]

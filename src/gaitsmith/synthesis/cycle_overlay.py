@@ -10,7 +10,7 @@ import numpy as np
 from gaitsmith.body.rig import spine_names
 from gaitsmith.conventions import SIDES
 from gaitsmith.gait.posture import mean_rotation, trunk_names
-from gaitsmith.geometry.curves import hermite, smoothstep
+from gaitsmith.geometry.curves import hermite
 from gaitsmith.geometry.rotations import IDENTITY, about, exp, inverse, log, multiply, rotate
 from gaitsmith.synthesis.overlay import Overlay, Samples, upper_joints
 from gaitsmith.synthesis.upper_body import shifted_sway
@@ -141,6 +141,13 @@ class CycleOverlay:
     ) -> list[Overlay]:
         """See :class:`gaitsmith.synthesis.overlay.BatchOverlayer`."""
         samples = Samples.of(requests, steps)
+        sway, pelvis, upper = self.laid(body, requests, samples)
+        return samples.split(sway, log(pelvis), upper)
+
+    def laid(
+        self, body: Body, requests: Sequence[StepRequest], samples: Samples
+    ) -> tuple[Float[np.ndarray, "M"], Float[np.ndarray, "M 4"], Float[np.ndarray, "M U 3"]]:
+        """Sway, pelvis and rotation vectors of the upper body at all samples."""
         ends = self._ends(body, requests, samples)
         right, phase = float(self._cycle.events[1, 0]), samples.phase
         own = np.where(samples.side == 0, phase * right, right + phase * (1.0 - right))
@@ -148,8 +155,7 @@ class CycleOverlay:
         center, rotations = self._cycle.at(own)
         pelvis = self._pelvis_of(ends, own, rotations)
         upper = self._upper(body, ends, rotations, pelvis)
-        sway = self._sway(body, samples, ends, center[:, 0])
-        return samples.split(sway, log(pelvis), upper)
+        return self._sway(body, samples, ends, center[:, 0]), pelvis, upper
 
     def arms_middle(self, body: Body) -> Float[np.ndarray, "U 3"]:
         """See :class:`gaitsmith.synthesis.overlay.ArmedOverlayer`."""
@@ -164,7 +170,7 @@ class CycleOverlay:
             np.maximum(length, 0.0) / body.leg_length / self._length
             for length in samples.lengths(requests)
         )
-        return _Ends((first, last), (own / before, own / this), smoothstep(samples.phase))
+        return _Ends((first, last), (own / before, own / this), samples.eased)
 
     def _sway(
         self, body: Body, samples: Samples, ends: _Ends, path: Float[np.ndarray, "M"]

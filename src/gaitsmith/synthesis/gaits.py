@@ -20,6 +20,7 @@ from gaitsmith.gait.posture import (
 )
 from gaitsmith.plan.rhythm import UNEVEN
 from gaitsmith.synthesis.cycle_overlay import CycleOverlay
+from gaitsmith.synthesis.cycles_overlay import CyclesOverlay
 from gaitsmith.synthesis.upper_body import Manner, RuleOverlay
 from gaitsmith.walks import KinematicWalk, winter
 from gaitsmith.walks.files import built_in
@@ -133,10 +134,16 @@ def winter_rules(manner: Manner | None = None) -> Gait:
 def learned(gait: LearnedGait, manner: Manner | None = None) -> Gait:
     """The way of walking that was learned from a clip."""
     leg = gait.body.leg_length
-    measured = gait.upper_body == "measured"
+    overlay: Overlayer
+    if gait.upper_body != "measured":
+        overlay = RuleOverlay(manner)
+    elif gait.others:
+        overlay = CyclesOverlay([stride.cycle for stride in gait.strides], leg)
+    else:
+        overlay = CycleOverlay(gait.cycle, leg)
     return Gait(
-        walk=KinematicWalk([gait.walk_data]),
-        overlay=CycleOverlay(gait.cycle, leg) if measured else RuleOverlay(manner),
+        walk=KinematicWalk([stride.walk_data for stride in gait.strides]),
+        overlay=overlay,
         habits=Habits(
             step_length=0.5 * sum(gait.step_lengths) / leg,
             cadence=gait.cadence,

@@ -9,6 +9,7 @@ import numpy as np
 
 from gaitsmith.body.rig import spine_names
 from gaitsmith.conventions import SIDES
+from gaitsmith.geometry.curves import smoothstep
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -127,6 +128,11 @@ class Samples:
             starts=np.repeat([k == "start" for k in kinds], counts),
             stops=np.repeat([k == "stop" for k in kinds], counts),
         )
+
+    @property
+    def eased(self) -> Float[np.ndarray, "M"]:
+        """From 0 where a step begins to 1 where it ends, without speed at both."""
+        return smoothstep(self.phase)
 
     def spread(self, values: Sequence[float]) -> Float[np.ndarray, "M"]:
         """One value a step, given to each of its samples."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
@@ -39,6 +39,31 @@ def walk_data_to_dict(walk: WalkData) -> dict[str, Any]:
             for name, s in walk.sequences.items()
         },
     }
+
+
+def rounded_walk_data(walk: WalkData) -> WalkData:
+    """``walk`` as :func:`walk_data_from_dict` will find it in a file."""
+
+    def number(value: Any) -> float:
+        return float(np.round(value, _DIGITS))
+
+    def rounded(sequence: TimedSequence) -> TimedSequence:
+        times, values = (np.round(v, _DIGITS) for v in (sequence.times, sequence.values))
+        return TimedSequence(times, values)
+
+    events = ("flat", "heel_off", "meta_off", "toe_off")
+    character = {
+        name: tuple(number(v) for v in value) if isinstance(value, tuple) else number(value)
+        for name, value in asdict(walk.character).items()
+    }
+    return replace(
+        walk,
+        previous_length=number(walk.previous_length),
+        length=number(walk.length),
+        character=Character(**character),  # type: ignore[arg-type]
+        **{name: number(getattr(walk, name)) for name in events},
+        **{name: rounded(sequence) for name, sequence in walk.sequences.items()},  # type: ignore[arg-type]
+    )
 
 
 def walk_data_from_dict(data: dict[str, Any]) -> WalkData:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaitsmith.conventions import SIDES
 from gaitsmith.errors import InfeasibleError, InvalidInputError
 from gaitsmith.gait.learn import standing_feet
-from gaitsmith.geometry.curves import hermite, parabola_slopes, pchip
+from gaitsmith.geometry.curves import hermite, parabola_slopes, pchip_slopes
 from gaitsmith.walks.data import Character, TimedSequence, WalkData
 from gaitsmith.walks.generalize import SMALLEST_ANGLE, generalize
 from gaitsmith.walks.planting import Planted, plant
@@ -19,7 +20,10 @@ if TYPE_CHECKING:
 
     from gaitsmith.body.body import Body
     from gaitsmith.gait.cycle import Cycle
+    from gaitsmith.gait.learn import Standing
 
+#: Curves of a planted stride that get ahead with the walk.
+TRAVELS = ("center", *(f"{side} ankle" for side in SIDES))
 #: Samples of a sequence over a whole step.
 SAMPLES = 120
 #: Toes that rise less than this against the ground lie on it, radians.
@@ -31,7 +35,7 @@ _STRAIGHTEST = float(np.radians(179.0))
 
 
 def walk_data_of(
-    cycle: Cycle, body: Body, *, width: float | None = None
+    cycle: Cycle, body: Body, *, width: float | None = None, feet: Standing | None = None
 ) -> tuple[WalkData, WalkData]:
     """Six timed sequences of the steps on the left and on the right foot of ``cycle``.
 
@@ -43,6 +47,8 @@ def walk_data_of(
         Whose legs and feet.
     width
         Meters between the lines of left and right feet; None: as in the cycle.
+    feet
+        How they stand in the cycle, by who knows it.
 
     Raises
     ------
@@ -55,7 +61,7 @@ def walk_data_of(
     data; a set for each side keeps a limp a limp. What one step leaves to the next (heel rise
     and toes of the rear foot) is timed by the step that it belongs to.
     """
-    feet = standing_feet(cycle)
+    feet = standing_feet(cycle) if feet is None else feet
     width = float(feet.place[0, 0] - feet.place[1, 0]) if width is None else width
     planted = plant(cycle, body, place=feet.place[:, 1], width=width)
     lengths = (planted.place[1], cycle.stride_length - planted.place[1])
@@ -64,7 +70,8 @@ def walk_data_of(
             f"the steps of this stride get {lengths[0]:.3f} and {lengths[1]:.3f} m ahead: too "
             "short to be generalized"
         )
-    sides = [_Side(planted, body, side) for side in (0, 1)]
+    curves = _Curves(planted)
+    sides = [_Side(curves, body, side) for side in (0, 1)]
     raw = [side.walk_data() for side in sides]
     left, right = (
         generalize(w, body, w.previous_length, w.length, before=other.character)
@@ -73,16 +80,58 @@ def walk_data_of(
     return left, right
 
 
+class _Curves:
+    """The curves of a planted stride over several strides, to be read anywhere.
+
+    Those that travel go through their samples on parabolas, the others monotonously.
+    """
+
+    def __init__(self, planted: Planted) -> None:
+        self.planted = planted
+        count = len(planted.center)
+        self._grid = np.arange(-count, 3 * count) / count
+        self._tables: dict[str, tuple[Float[np.ndarray, "n c"], Float[np.ndarray, "n c"]]] = {}
+        feet = {
+            f"{side} {name}": values[:, i].reshape(count, -1)
+            for i, side in enumerate(SIDES)
+            for name, values in (
+                ("ankle", planted.ankle),
+                ("pitch", planted.pitch),
+                ("meta", planted.meta),
+                ("hip", planted.hip),
+            )
+        }
+        curves = {"center": planted.center, **feet}
+        for slopes, names in (
+            (parabola_slopes, [n for n in curves if n in TRAVELS]),
+            (pchip_slopes, [n for n in curves if n not in TRAVELS]),
+        ):
+            flat = np.concatenate([curves[name] for name in names], axis=1)
+            far = np.zeros(flat.shape[1])
+            if names[0] in TRAVELS:
+                far[::2] = planted.stride_length  # forward, up, forward, up
+            table = np.concatenate([flat - far, flat, flat + far, flat + 2.0 * far])
+            slope, first = slopes(self._grid, table), 0
+            for name in names:
+                own = slice(first, first := first + curves[name].shape[1])
+                self._tables[name] = table[:, own], slope[:, own]
+
+    def at(self, name: str, phase: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n c"]:
+        """A curve at stride phases."""
+        return hermite(self._grid, *self._tables[name], phase)
+
+
 @dataclass(eq=False)
 class _Side:
     """The step on one foot, read from a planted stride."""
 
-    planted: Planted
+    curves: _Curves
     body: Body
     side: int
 
     def __post_init__(self) -> None:
-        marks, other = self.planted.marks[self.side], self.planted.marks[1 - self.side]
+        planted = self.curves.planted
+        marks, other = planted.marks[self.side], planted.marks[1 - self.side]
         self.start = float(marks[4])
         # shares of the stride that this step and the other one take
         self.span = float((other[4] - marks[4]) % 1.0)
@@ -91,11 +140,11 @@ class _Side:
         self.own_toe_off = float((marks[3] - self.span) / rest)
         if not (0.0 < self.toe_off < 1.0 and 0.0 < self.own_toe_off < 1.0):
             raise InvalidInputError("toe-off must come between the other foot's heel strikes")
-        stride = self.planted.stride_length
-        ahead = self.planted.place[1] - self.planted.place[0]
+        stride = planted.stride_length
+        ahead = planted.place[1] - planted.place[0]
         self.length = float(ahead if self.side == 0 else stride - ahead)
         self.previous = stride - self.length
-        self.zero = float(self.planted.place[self.side])
+        self.zero = float(planted.place[self.side])
 
     def step_phase(self, own: float) -> float:
         """Own phase of the stance foot to the phase of this step, running on into the next."""
@@ -109,43 +158,30 @@ class _Side:
         late = (t - 1.0) * self.own_toe_off / self.toe_off
         return np.where(t <= 1.0, t * self.span, self.span + late * (1.0 - self.span))
 
-    def read(
-        self, values: Float[np.ndarray, "N *c"], own: Float[np.ndarray, "n"], *, travels: bool
-    ) -> Float[np.ndarray, "n *c"]:
+    def read(self, curve: str, own: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n c"]:
         """A planted curve at own phases, forward from N of the stance foot where it travels."""
-        count = len(values)
-        flat = values.reshape(count, -1)
-        far = np.zeros(flat.shape[1])
-        if travels:
-            far[0] = self.planted.stride_length
-        table = np.concatenate([flat - far, flat, flat + far, flat + 2.0 * far])
-        grid = np.arange(-count, 3 * count) / count
-        at = self.start + own
-        if travels:
-            out = hermite(grid, table, parabola_slopes(grid, table), at)
+        out = self.curves.at(curve, self.start + own)
+        if curve in TRAVELS:
             out[:, 0] -= self.zero
-        else:
-            out = pchip(grid, table, at)
-        return out.reshape(len(own), *values.shape[1:])
+        return out
 
-    def sequence(
-        self, values: Float[np.ndarray, "N *c"], first: float, last: float, *, travels: bool = False
-    ) -> TimedSequence:
+    def sequence(self, curve: str, first: float, last: float) -> TimedSequence:
         count = max(4, int(np.ceil((last - first) * SAMPLES)) + 1)
         times = np.linspace(first, last, count)
-        return TimedSequence(times, self.read(values, self.own_phase(times), travels=travels))
+        return TimedSequence(times, self.read(curve, self.own_phase(times)))
 
     def walk_data(self) -> WalkData:
         """The six sequences; their ends are made consistent afterwards."""
-        s, o, p = self.side, 1 - self.side, self.planted
-        flat, heel_off, meta_off = (self.step_phase(float(m)) for m in p.marks[s][:3])
+        this, other = SIDES[self.side], SIDES[1 - self.side]
+        marks = self.curves.planted.marks[self.side]
+        flat, heel_off, meta_off = (self.step_phase(float(m)) for m in marks[:3])
         flat = min(flat, 0.95)
         end = 1.0 + self.toe_off
-        hip = self.sequence(p.center, 0.0, 1.0, travels=True)
-        ankle = self.sequence(p.ankle[:, o], self.toe_off, 1.0, travels=True)
-        foot1 = self.sequence(p.pitch[:, s], 0.0, flat)
-        foot2 = self.sequence(p.pitch[:, s], flat, end)
-        meta = self.sequence(p.meta[:, s], meta_off, end)
+        hip = self.sequence("center", 0.0, 1.0)
+        ankle = self.sequence(f"{other} ankle", self.toe_off, 1.0)
+        foot1 = self.sequence(f"{this} pitch", 0.0, flat)
+        foot2 = self.sequence(f"{this} pitch", flat, end)
+        meta = self.sequence(f"{this} meta", meta_off, end)
         landed, off_pitch = float(foot1.values[0, 0]), -float(foot2.values[-1, 0])
         level = abs(float(foot2.values[0, 0])) < 2.0 * SMALLEST_ANGLE
         if level:
@@ -162,8 +198,9 @@ class _Side:
         meta = meta.with_values(for_good(np.maximum(meta.values - meta.values[0], 0.0)))
         off_meta = max(float(meta.values[-1, 0]), 2.0 * SMALLEST_ANGLE)
         meta = _ending(meta, off_meta, meta.unit)
-        strike = self.read(p.ankle[:, o], np.array([self.span]), travels=True)[0]
-        joint = np.array([self._at_strike(p.hip[:, o, i]) for i in (0, 1)])
+        at_strike = np.array([self.span])
+        strike = self.read(f"{other} ankle", at_strike)[0]
+        joint = self.read(f"{other} hip", at_strike)[0]
         reach = float(np.hypot(*(strike - hip.values[-1] - joint)))
         lead, lift = joint / self.body.leg_length
         return WalkData(
@@ -173,7 +210,7 @@ class _Side:
             character=Character(
                 ratio=self.length / self.body.leg_length,
                 knee=self._interior_knee(reach),
-                strike_pitch=_apart_from_0(self._at_strike(p.pitch[:, o])),
+                strike_pitch=_apart_from_0(float(self.read(f"{other} pitch", at_strike)[0, 0])),
                 off_pitch=off_pitch,
                 off_meta=off_meta,
                 # sole and toes keep step with each other at every step length
@@ -188,14 +225,10 @@ class _Side:
             hip=hip,
             foot1=foot1,
             foot2=foot2,
-            foot3=self.sequence(p.pitch[:, o], self.toe_off, 1.0),
+            foot3=self.sequence(f"{other} pitch", self.toe_off, 1.0),
             meta=meta,
             ankle=ankle,
         )
-
-    def _at_strike(self, values: Float[np.ndarray, "N"]) -> float:
-        """A curve that does not travel, where the step ends."""
-        return float(self.read(values, np.array([self.span]), travels=False)[0])
 
     def _interior_knee(self, reach: float) -> float:
         thigh, shin = self.body.thigh, self.body.shin

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,26 +13,33 @@ from gaitsmith._version import __version__
 from gaitsmith.body.files import body_from_dict, body_to_dict
 from gaitsmith.body.rig import skeleton_of
 from gaitsmith.conventions import SIDES
-from gaitsmith.errors import FileFormatError, GaitsmithError
-from gaitsmith.gait.cycle import EVENTS, Cycle
-from gaitsmith.gait.elevation import SEGMENTS, ElevationData, elevation_of
+from gaitsmith.errors import FileFormatError, GaitsmithError, InvalidInputError
+from gaitsmith.gait.cycle import EVENTS
 from gaitsmith.gait.events import Stance
 from gaitsmith.gait.learn import Learned, standing_feet
-from gaitsmith.walks.files import walk_data_from_dict, walk_data_to_dict
-from gaitsmith.walks.from_cycle import walk_data_of
+from gaitsmith.walks.stride import (
+    GaitStride,
+    number_of,
+    rounded,
+    stride_from_dict,
+    stride_of,
+    stride_to_dict,
+)
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from gaitsmith.body.body import Body
+    from gaitsmith.gait.cycle import Cycle
+    from gaitsmith.gait.elevation import ElevationData
+    from gaitsmith.gait.learn import Standing
     from gaitsmith.walks.data import WalkData
 
 FORMAT = "gaitsmith-gait-1"
 SUFFIX = ".gait.json"
-#: Digits kept after the point: a micrometer, a fifth of an arc second.
-_DIGITS = 6
-#: Times that rounding may change a file's last digits before they stay.
-_ROUNDS = 8
+#: Leg lengths that the steps of a gait's strides differ by at least.
+APART = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +52,8 @@ class LearnedGait:
         For people to read.
     body
         Who was measured.
-    cycle
-        One closed stride of the whole body (of the legs, where only they were measured).
-    walk_data
-        Steps on the left and on the right foot.
-    elevation
-        Elevation angles of the legs.
+    stride
+        The usual one of the whole body (of the legs, where only they were measured).
     step_lengths
         Meters that the [left, right] foot lands ahead of the other.
     step_width
@@ -66,13 +69,14 @@ class LearnedGait:
     recipe
         What a composed gait was mixed from and how: plain JSON, see
         :func:`gaitsmith.composing.compose`. None for a gait that was learned.
+    others
+        Strides of the same person and style with other step lengths: steps are made of the two
+        that are nearest in length.
     """
 
     name: str
     body: Body
-    cycle: Cycle
-    walk_data: tuple[WalkData, WalkData]
-    elevation: ElevationData
+    stride: GaitStride
     step_lengths: tuple[float, float]
     step_width: float
     toe_out: tuple[float, float]
@@ -82,6 +86,27 @@ class LearnedGait:
     span: tuple[float, float]
     notes: tuple[str, ...]
     recipe: dict[str, Any] | None = None
+    others: tuple[GaitStride, ...] = ()
+
+    @property
+    def strides(self) -> tuple[GaitStride, ...]:
+        """All, the usual one first."""
+        return (self.stride, *self.others)
+
+    @property
+    def cycle(self) -> Cycle:
+        """Of the usual stride."""
+        return self.stride.cycle
+
+    @property
+    def walk_data(self) -> tuple[WalkData, WalkData]:
+        """Steps of the usual stride on the left and on the right foot."""
+        return self.stride.walk_data
+
+    @property
+    def elevation(self) -> ElevationData:
+        """Elevation angles of the legs in the usual stride."""
+        return self.stride.elevation
 
     @property
     def cadence(self) -> float:
@@ -96,33 +121,80 @@ def learned_gait(
     clip: str = "",
     upper_body: str,
     recipe: dict[str, Any] | None = None,
+    feet: Standing | None = None,
 ) -> LearnedGait:
-    """The gait of a learned stride, exactly as its file will hold it."""
-    gait = LearnedGait(
+    """The gait of a learned stride, exactly as its file will hold it.
+
+    ``feet`` says how they stand in the stride, where that is known already.
+    """
+    stride = stride_of(found.cycle, found.body, feet)
+    return LearnedGait(
         name=name,
         body=found.body,
-        cycle=found.cycle,
-        walk_data=walk_data_of(found.cycle, found.body),
-        elevation=elevation_of(found.cycle),
-        step_lengths=found.step_lengths,
-        step_width=found.step_width,
-        toe_out=found.toe_out,
+        stride=stride,
+        step_lengths=_filed(found.step_lengths),
+        step_width=number_of(found.step_width),
+        toe_out=_filed(found.toe_out, degrees=True),
         upper_body=upper_body,
         clip=clip,
-        stances=found.stances,
-        span=found.span,
+        stances=tuple(Stance(s.side, *rounded(s.times).tolist(), cut=s.cut) for s in found.stances),
+        span=_filed(found.span),
         notes=found.notes,
         recipe=recipe,
     )
-    # what is walked right away and what is read from the file are the same, to the byte; unit
-    # quaternions that were rounded and made unit again may be rounded otherwise
-    data = gait_to_dict(gait)
-    for _ in range(_ROUNDS):
-        gait = gait_from_dict(data)
-        before, data = data, gait_to_dict(gait)
-        if data == before:
-            break
-    return gait
+
+
+def said_of(gait: LearnedGait, *, license: str | None, source: str | None) -> LearnedGait:
+    """``gait`` with another license and source, where they are given."""
+    said = {k: v for k, v in (("license", license), ("source", source)) if v is not None}
+    if not said:
+        return gait
+    strides = [replace(s, cycle=s.cycle.with_(**said)) for s in gait.strides]
+    return replace(gait, stride=strides[0], others=tuple(strides[1:]))
+
+
+def with_others(gait: LearnedGait, strides: Iterable[GaitStride]) -> LearnedGait:
+    """``gait`` with ``strides`` of the same person and style at other step lengths.
+
+    What is nearer than :data:`APART` to one before it, or whose left and right steps are in
+    another order, is left out, and ``notes`` say so.
+
+    Raises
+    ------
+    InvalidInputError
+        If a stride is of another body.
+    """
+    kept, notes = [gait.stride], list(gait.notes)
+    for stride in strides:
+        if stride.walk_data[0].body != gait.body:
+            raise InvalidInputError("the strides of a gait must be of one body; see on_body")
+        off = np.array([np.subtract(stride.ratios, other.ratios) for other in kept])
+        if (np.abs(off) >= APART).all() and (off[:, 0] * off[:, 1] > 0.0).all():
+            kept.append(stride)
+        else:
+            notes.append(
+                f"a stride of {stride.cycle.stride_length:.2f} m left out: too near in length to "
+                "another"
+            )
+    others = sorted(kept[1:], key=lambda stride: stride.cycle.stride_length)
+    return replace(gait, others=tuple(others), notes=tuple(notes))
+
+
+def _filed(pair: tuple[float, float], *, degrees: bool = False) -> tuple[float, float]:
+    """Two numbers as a file will hold them."""
+    if degrees:
+        one, two = np.radians(rounded(np.degrees(pair)))
+    else:
+        one, two = rounded(pair)
+    return float(one), float(two)
+
+
+def grounded(cycle: Cycle, feet: Standing | None = None) -> tuple[Cycle, Standing]:
+    """``cycle`` with its feet on the ground at both sides of the line it walks along."""
+    feet = standing_feet(cycle) if feet is None else feet
+    middle = 0.5 * (feet.place[0, 0] + feet.place[1, 0])
+    by = -np.array([middle, feet.height, cycle.center[:, 2].mean()])
+    return cycle.with_(center=cycle.center + by), feet.moved(by)
 
 
 def gait_of_cycle(
@@ -132,14 +204,14 @@ def gait_of_cycle(
     name: str,
     notes: tuple[str, ...] = (),
     recipe: dict[str, Any] | None = None,
+    feet: Standing | None = None,
 ) -> LearnedGait:
     """The gait of a whole-body stride that was made and not learned from a clip.
 
-    Its steps, its width and its toe-out are what its feet do.
+    Its steps, its width and its toe-out are what its feet do; ``feet`` says how they stand, where
+    that is known already.
     """
-    feet = standing_feet(cycle)
-    middle = 0.5 * (feet.place[0, 0] + feet.place[1, 0])
-    cycle = cycle.with_(center=cycle.center - [middle, feet.height, cycle.center[:, 2].mean()])
+    cycle, feet = grounded(cycle, feet)
     ahead = float(feet.place[1, 1] - feet.place[0, 1])
     found = Learned(
         cycle=cycle,
@@ -151,17 +223,14 @@ def gait_of_cycle(
         toe_out=(float(feet.heading[0]), float(-feet.heading[1])),
         notes=notes,
     )
-    return learned_gait(found, name=name, upper_body="measured", recipe=recipe)
-
-
-def _rounded(value: Any) -> Any:
-    return np.round(np.asarray(value), _DIGITS).tolist()
+    return learned_gait(found, name=name, upper_body="measured", recipe=recipe, feet=feet)
 
 
 def gait_to_dict(gait: LearnedGait) -> dict[str, Any]:
     """``gait`` as plain JSON; ``docs/reference/gait-files.md`` explains every key."""
     cycle = gait.cycle
     made = {} if gait.recipe is None else {"recipe": gait.recipe}
+    stride = stride_to_dict(gait.stride)
     return {
         "format": FORMAT,
         "name": gait.name,
@@ -172,42 +241,25 @@ def gait_to_dict(gait: LearnedGait) -> dict[str, Any]:
         **made,
         "clip": {
             "file": gait.clip,
-            "span_s": _rounded(gait.span),
+            "span_s": rounded(gait.span).tolist(),
             "stances": [
-                {"side": SIDES[s.side], **dict(zip(EVENTS, _rounded(s.times), strict=True))}
+                {"side": SIDES[s.side], **dict(zip(EVENTS, rounded(s.times).tolist(), strict=True))}
                 | ({"cut": s.cut} if s.cut else {})
                 for s in gait.stances
             ],
         },
         "body": body_to_dict(gait.body),
-        "stride_length_m": _rounded(cycle.stride_length),
-        "duration_s": _rounded(cycle.duration),
-        "speed_mps": _rounded(cycle.speed),
-        "cadence_spm": _rounded(gait.cadence),
-        "step_lengths_m": dict(zip(SIDES, _rounded(gait.step_lengths), strict=True)),
-        "step_width_m": _rounded(gait.step_width),
-        "toe_out_deg": dict(zip(SIDES, _rounded(np.degrees(gait.toe_out)), strict=True)),
-        "events": {
-            side: dict(zip(EVENTS, _rounded(cycle.events[i]), strict=True))
-            for i, side in enumerate(SIDES)
-        },
+        "stride_length_m": stride.pop("stride_length_m"),
+        "duration_s": stride.pop("duration_s"),
+        "speed_mps": number_of(cycle.speed),
+        "cadence_spm": number_of(gait.cadence),
+        "step_lengths_m": dict(zip(SIDES, rounded(gait.step_lengths).tolist(), strict=True)),
+        "step_width_m": number_of(gait.step_width),
+        "toe_out_deg": dict(zip(SIDES, rounded(np.degrees(gait.toe_out)).tolist(), strict=True)),
+        "events": stride.pop("events"),
         "upper_body": gait.upper_body,
-        "cycle": {
-            "strides": cycle.strides,
-            "center": _rounded(cycle.center),
-            "rotations": {
-                joint: _rounded(cycle.rotations[:, i])
-                for i, joint in enumerate(cycle.skeleton.names)
-            },
-        },
-        "walk_data": {
-            side: walk_data_to_dict(walk) for side, walk in zip(SIDES, gait.walk_data, strict=True)
-        },
-        "elevation": {
-            "leg_length_m": _rounded(gait.elevation.leg_length),
-            "segments": list(SEGMENTS),
-            "angles": {side: _rounded(gait.elevation.angles[i]) for i, side in enumerate(SIDES)},
-        },
+        **stride,
+        **({"others": [stride_to_dict(other) for other in gait.others]} if gait.others else {}),
     }
 
 
@@ -217,41 +269,16 @@ def gait_from_dict(data: dict[str, Any]) -> LearnedGait:
         raise ValueError(f"format is {data['format']!r}, not {FORMAT!r}")
     body = body_from_dict(data["body"])
     skeleton = skeleton_of(body)
-    loop = data["cycle"]
-    center = np.array(loop["center"], dtype=np.float64)
-    rotations = np.stack(
-        [np.array(loop["rotations"][joint], dtype=np.float64) for joint in skeleton.names], axis=1
+    stride, *others = (
+        stride_from_dict(each, skeleton, source=data["source"], license=data["license"])
+        for each in (data, *data.get("others", ()))
     )
-    norm = np.linalg.norm(rotations, axis=-1, keepdims=True)
-    if not (np.abs(norm - 1.0) < 1e-3).all():
-        raise ValueError("rotations must be unit quaternions")
-    events = np.array([[data["events"][side][event] for event in EVENTS] for side in SIDES])
-    cycle = Cycle(
-        skeleton=skeleton,
-        center=center,
-        rotations=rotations / norm,
-        events=events,
-        stride_length=data["stride_length_m"],
-        duration=data["duration_s"],
-        strides=loop["strides"],
-        source=data["source"],
-        license=data["license"],
-    )
-    left, right = (walk_data_from_dict(data["walk_data"][side]) for side in SIDES)
-    lift = data["elevation"]
     if data["upper_body"] not in ("measured", "rules"):
         raise ValueError(f"upper_body must be 'measured' or 'rules', got {data['upper_body']!r}")
     return LearnedGait(
         name=str(data["name"]),
         body=body,
-        cycle=cycle,
-        walk_data=(left, right),
-        elevation=ElevationData(
-            np.array([lift["angles"][side] for side in SIDES]),
-            cycle.stride_length,
-            cycle.duration,
-            lift["leg_length_m"],
-        ),
+        stride=stride,
         step_lengths=_pair(data["step_lengths_m"]),
         step_width=number("step_width_m", data["step_width_m"], "meters"),
         toe_out=_pair({s: np.radians(v) for s, v in data["toe_out_deg"].items()}),
@@ -264,6 +291,7 @@ def gait_from_dict(data: dict[str, Any]) -> LearnedGait:
         span=(float(data["clip"]["span_s"][0]), float(data["clip"]["span_s"][1])),
         notes=tuple(data["notes"]),
         recipe=data.get("recipe"),
+        others=tuple(others),
     )
 
 

@@ -14,23 +14,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.body.sole import rolled_ankle
-from gaitsmith.conventions import BALL, HEEL, SIDE_SIGN, SIDES, TOE
+from gaitsmith.conventions import BALL, HEEL, SIDES, TOE
 from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.motion.kinematics import forward_kinematics, sole_positions
+from gaitsmith.walks.planting_fit import ONSET, SAMPLES, Fit, Measured
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Float
 
     from gaitsmith.body.body import Body
     from gaitsmith.gait.cycle import Cycle
 
-#: Samples of the stride, splines a stride, iterations.
-SAMPLES, SPLINES, ITERATIONS = 240, 30, 12
 #: Least share of the stride in which toes turn up before they leave.
 TURNING = 0.08
-#: How far toes bend down against the sole at most, radians.
-CURL = 0.1
 #: A sole is level below this pitch, and its toes lie below this meta angle, radians.
 LEVEL, LYING = float(np.radians(2.0)), float(np.radians(4.0))
 #: The toes of a living foot begin to slide before the force is gone, those of a planted one leave
@@ -38,19 +34,10 @@ LEVEL, LYING = float(np.radians(2.0)), float(np.radians(4.0))
 SLIDES = 0.02
 #: Least double support of planted feet after each heel strike, share of the stride.
 DOUBLE = 0.02
-#: Least knee flexion that a bearing leg is asked to show, radians.
-_STRAIGHTEST = 0.105
-#: Part of a stride over which a heel begins to rise.
-_ONSET = 0.05
 #: A foot whose sole is never more level than this in stance walks on its toes.
 _ON_TOES = float(np.radians(6.0))
 #: Toes: share of the sole's pitch that the meta angle has at toe-off where toes are not known.
 _META_SHARE = 0.75
-#: Weights of the splines' own size and of their second differences, against radians of angle:
-#: hips forward, hips up, then the pitch and the meta angle of both feet. Weaker on the hips, joints
-#: are nearer to what was measured (1.4 instead of 1.9 deg, rms) and hips lurch at heel strikes.
-_SIZE = (0.0, 0.0, 0.35, 0.35, 0.15, 0.15)
-_BEND = (8.0, 12.0, 0.6, 0.6, 0.3, 0.3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,21 +74,6 @@ class Planted:
     stride_length: float
 
 
-@dataclass(eq=False)
-class _Measured:
-    """What the stride shows, ``(N, ...)``; sides [left, right]."""
-
-    phase: Float[np.ndarray, "N"]
-    center: Float[np.ndarray, "N 3"]  # lateral, up, forward with travel
-    hip: Float[np.ndarray, "N 2 3"]  # from the center
-    leg: Float[np.ndarray, "N 2 3"]  # hip to ankle
-    thigh: Float[np.ndarray, "N 2"]
-    knee: Float[np.ndarray, "N 2"]
-    pitch: Float[np.ndarray, "N 2"]
-    toes: Float[np.ndarray, "N 2"]
-    own: Float[np.ndarray, "N 2"]
-
-
 def plant(cycle: Cycle, body: Body, *, place: Float[np.ndarray, "2"], width: float) -> Planted:
     """Planted feet for the legs of ``cycle``.
 
@@ -122,7 +94,7 @@ def plant(cycle: Cycle, body: Body, *, place: Float[np.ndarray, "2"], width: flo
     marks = np.stack([_marks(seen, cycle.events, side) for side in (0, 1)])
     pitch = np.stack([_pitch(seen, marks[s], s) for s in (0, 1)], axis=-1)
     meta = np.stack([_meta(seen, marks[s], s) for s in (0, 1)], axis=-1)
-    fit = _Fit(seen, body, cycle.stride_length, place, marks, width, pitch, meta)
+    fit = Fit(seen, body, cycle.stride_length, place, marks, width, pitch, meta)
     center, pitch, meta = fit.solved()
     ankle = fit.ankles(pitch, meta)
     hip = seen.hip[..., [2, 1]]
@@ -130,7 +102,8 @@ def plant(cycle: Cycle, body: Body, *, place: Float[np.ndarray, "2"], width: flo
     return Planted(center, ankle, pitch, meta, hip, place, marks, cycle.stride_length)
 
 
-def _seen(cycle: Cycle, zero: float) -> _Measured:
+def _seen(cycle: Cycle, zero: float) -> Measured:
+    cycle = cycle.legs
     phase = np.arange(SAMPLES) / SAMPLES
     center, turned = cycle.at(phase)
     center = center + (phase * cycle.stride_length - zero)[:, None] * [0.0, 0.0, 1.0]
@@ -148,7 +121,7 @@ def _seen(cycle: Cycle, zero: float) -> _Measured:
     hip, knee, ankle = at("UpperLeg"), at("LowerLeg"), at("Foot")
     thigh, shin = knee - hip, ankle - knee
     sine = np.linalg.norm(np.cross(thigh, shin), axis=-1)
-    return _Measured(
+    return Measured(
         phase=phase,
         center=center,
         hip=hip - center[:, None],
@@ -161,13 +134,13 @@ def _seen(cycle: Cycle, zero: float) -> _Measured:
     )
 
 
-def _stance(seen: _Measured, side: int, last: float) -> tuple[np.ndarray, np.ndarray]:
+def _stance(seen: Measured, side: int, last: float) -> tuple[np.ndarray, np.ndarray]:
     """Order in which a foot's own phase rises, and which of those samples are of its stance."""
     order = np.argsort(seen.own[:, side])
     return order, seen.own[order, side] <= last
 
 
-def _marks(seen: _Measured, both: Float[np.ndarray, "2 4"], side: int) -> Float[np.ndarray, "5"]:
+def _marks(seen: Measured, both: Float[np.ndarray, "2 4"], side: int) -> Float[np.ndarray, "5"]:
     """Own phases at which the sole is level, rises, stands on its tip and leaves."""
     events = both[side]
     landing = float((both[1 - side, 0] - events[0]) % 1.0)
@@ -194,11 +167,11 @@ def _marks(seen: _Measured, both: Float[np.ndarray, "2 4"], side: int) -> Float[
     return np.array([flat, heel_off, meta_off, toe_off, events[0]])
 
 
-def _has_toes(seen: _Measured, side: int) -> bool:
+def _has_toes(seen: Measured, side: int) -> bool:
     return float(np.ptp(seen.toes[:, side] - seen.pitch[:, side])) > np.radians(5.0)
 
 
-def _pitch(seen: _Measured, marks: Float[np.ndarray, "5"], side: int) -> Float[np.ndarray, "N"]:
+def _pitch(seen: Measured, marks: Float[np.ndarray, "5"], side: int) -> Float[np.ndarray, "N"]:
     """Measured pitch as a planted sole can show it: down to level, level, rising."""
     flat, heel_off, _, toe_off, _ = marks
     out = np.array(seen.pitch[:, side])
@@ -216,13 +189,13 @@ def _pitch(seen: _Measured, marks: Float[np.ndarray, "5"], side: int) -> Float[n
             value[landing] = np.minimum.accumulate(np.maximum(first, 0.0))
         value[(own >= flat) & (own <= heel_off)] = 0.0
         rising = (own > heel_off) & stands
-        rise = np.minimum(value[rising], 0.0) * smoothstep((own[rising] - heel_off) / _ONSET)
+        rise = np.minimum(value[rising], 0.0) * smoothstep((own[rising] - heel_off) / ONSET)
         value[rising] = np.minimum.accumulate(rise)
     out[order] = value
     return out
 
 
-def _meta(seen: _Measured, marks: Float[np.ndarray, "5"], side: int) -> Float[np.ndarray, "N"]:
+def _meta(seen: Measured, marks: Float[np.ndarray, "5"], side: int) -> Float[np.ndarray, "N"]:
     """Toes against the floor from meta off to toe-off, 0 elsewhere."""
     _, _, meta_off, toe_off, _ = marks
     order, stands = _stance(seen, side, toe_off)
@@ -240,152 +213,9 @@ def _meta(seen: _Measured, marks: Float[np.ndarray, "5"], side: int) -> Float[np
     return out
 
 
-def _splines() -> Float[np.ndarray, "N S"]:
-    """Uniform periodic cubic B-splines at the samples."""
-    at = np.arange(SAMPLES)[:, None] * (SPLINES / SAMPLES) - np.arange(SPLINES)
-    d = np.abs((at + 0.5 * SPLINES) % SPLINES - 0.5 * SPLINES)
-    near = 2.0 / 3.0 - d * d + 0.5 * d**3
-    return np.where(d < 1.0, near, np.where(d < 2.0, (2.0 - d) ** 3 / 6.0, 0.0))
-
-
-class _Fit:
-    """Hips and soles that show the measured angles: damped Gauss-Newton over splines."""
-
-    def __init__(
-        self,
-        seen: _Measured,
-        body: Body,
-        stride: float,
-        place: Float[np.ndarray, "2"],
-        marks: Float[np.ndarray, "2 5"],
-        width: float,
-        pitch: Float[np.ndarray, "N 2"],
-        meta: Float[np.ndarray, "N 2"],
-    ) -> None:
-        self.seen, self.body, self.stride, self.place = seen, body, stride, place
-        self.pitch, self.meta = pitch, meta
-        flat, heel_off, meta_off, toe_off, strike = marks.T
-        own = seen.own
-        self.down: Bool[np.ndarray, "N 2"] = own <= toe_off
-        self.across = 0.5 * width * SIDE_SIGN - (seen.center[:, :1] + seen.hip[..., 0])
-        # a foot that struck before this stride began stands one stride behind
-        late = seen.phase[:, None] < strike
-        self.stands = place - stride * late
-        rising = smoothstep((own - heel_off) / _ONSET)
-        self.free_pitch = np.where(own < flat, 1.0 - smoothstep(own / flat), rising) * self.down
-        on_toes = self.pitch[np.abs(own - flat).argmin(axis=0), [0, 1]] < -0.01
-        self.free_pitch = np.where(on_toes & self.down, 1.0, self.free_pitch)
-        self.free_meta = smoothstep((own - meta_off) / _ONSET) * self.down
-        self.basis = _splines()
-        self.start = seen.center[:, [2, 1]]
-
-    def ankles(
-        self, pitch: Float[np.ndarray, "N 2"], meta: Float[np.ndarray, "N 2"]
-    ) -> Float[np.ndarray, "N 2 2"]:
-        """Where the ankles of bearing feet are."""
-        out = rolled_ankle(self.body.foot, pitch, meta)
-        out[..., 0] += self.stands
-        return out
-
-    def solved(
-        self,
-    ) -> tuple[Float[np.ndarray, "N 2"], Float[np.ndarray, "N 2"], Float[np.ndarray, "N 2"]]:
-        """Center, pitch and meta of the best fit."""
-        x, damping = np.zeros((6, SPLINES)), 1e-3
-        value, jacobian = self._system(x)
-        for _ in range(ITERATIONS):
-            normal = jacobian.T @ jacobian
-            step = np.linalg.solve(
-                normal + damping * np.diag(np.diag(normal)), -jacobian.T @ value
-            ).reshape(6, SPLINES)
-            tried, tried_jacobian = self._system(x + step)
-            if tried @ tried < value @ value:
-                x, value, jacobian, damping = x + step, tried, tried_jacobian, 0.3 * damping
-                if np.abs(step).max() < 1e-7:
-                    break
-            else:
-                damping *= 8.0
-        return self._pose(x)
-
-    def _pose(
-        self, x: Float[np.ndarray, "6 S"]
-    ) -> tuple[Float[np.ndarray, "N 2"], Float[np.ndarray, "N 2"], Float[np.ndarray, "N 2"]]:
-        change = (self.basis @ x.T).reshape(SAMPLES, 3, 2)
-        center = self.start + change[:, 0]
-        raised = self.pitch + self.free_pitch * change[:, 1]
-        heel = self.down & (self.pitch > 0.0)
-        pitch = np.where(heel, np.maximum(raised, 0.0), raised)
-        pitch = np.where(self.down & ~heel, np.minimum(pitch, 0.0), pitch)
-        meta = np.maximum(self.meta + self.free_meta * change[:, 2], 0.0)
-        meta = np.minimum(meta, np.maximum(-pitch, 0.0) + CURL)
-        return center, pitch, meta
-
-    def _angles(
-        self,
-        center: Float[np.ndarray, "N 2"],
-        pitch: Float[np.ndarray, "N 2"],
-        meta: Float[np.ndarray, "N 2"],
-    ) -> Float[np.ndarray, "N 2 3"]:
-        """Thigh against the vertical, knee, and foot against the shin, of both legs."""
-        body, seen = self.body, self.seen
-        leg = self.ankles(pitch, meta) - (center[:, None] + seen.hip[..., [2, 1]])
-        square = (leg**2).sum(-1) + self.across**2
-        cosine = (square - body.thigh**2 - body.shin**2) / (2.0 * body.thigh * body.shin)
-        # beyond reach the angle goes on linearly, so that the way back is seen
-        inside = np.minimum(cosine, np.cos(0.05))
-        knee = np.arccos(np.maximum(inside, -1.0)) - (cosine - inside) / np.sin(0.05)
-        lead = np.arctan2(
-            body.shin * np.sin(knee), body.thigh + body.shin * np.cos(np.maximum(knee, 0.0))
-        )
-        thigh = np.arctan2(leg[..., 0], -leg[..., 1]) + lead
-        return np.stack([thigh, knee, pitch - (thigh - knee)], axis=-1)
-
-    def _system(
-        self, x: Float[np.ndarray, "6 S"]
-    ) -> tuple[Float[np.ndarray, "R"], Float[np.ndarray, "R 6S"]]:
-        """Residuals and their Jacobian: angles of bearing legs, size and bend of the splines."""
-        seen, tiny = self.seen, 1e-6
-        center, pitch, meta = self._pose(x)
-        now = self._angles(center, pitch, meta)
-        target = np.stack(
-            [
-                seen.thigh,
-                np.maximum(seen.knee, _STRAIGHTEST),
-                seen.pitch - (seen.thigh - seen.knee),
-            ],
-            axis=-1,
-        )
-        weight = self.down[..., None].astype(np.float64)
-        rows = [(weight * (now - target)).ravel()]
-        blocks = np.zeros((SAMPLES, 2, 3, 6, SPLINES))
-        for axis in (0, 1):
-            moved = center + tiny * np.eye(2)[axis]
-            slope = (self._angles(moved, pitch, meta) - now) / tiny * weight
-            blocks[..., axis, :] = slope[..., None] * self.basis[:, None, None, :]
-        for kind, free in ((1, self.free_pitch), (2, self.free_meta)):
-            nudged = (pitch - tiny * free, meta) if kind == 1 else (pitch, meta + tiny * free)
-            sign = -1.0 if kind == 1 else 1.0
-            slope = sign * (self._angles(center, *nudged) - now) / tiny * weight
-            for side in (0, 1):
-                column = 2 * kind + side
-                blocks[:, side, :, column] = slope[:, side, :, None] * self.basis[:, None, :]
-        jacobian = [blocks.reshape(SAMPLES * 6, 6 * SPLINES)]
-        bend = np.eye(SPLINES) - 0.5 * np.roll(np.eye(SPLINES), 1, 0)
-        bend -= 0.5 * np.roll(np.eye(SPLINES), -1, 0)
-        per = np.sqrt(SAMPLES / SPLINES)
-        for row in range(6):
-            for scale, matrix in ((_SIZE[row], np.eye(SPLINES)), (_BEND[row], bend)):
-                if scale:
-                    part = np.zeros((SPLINES, 6, SPLINES))
-                    part[:, row] = per * scale * matrix
-                    jacobian.append(part.reshape(SPLINES, -1))
-                    rows.append(per * scale * matrix @ x[row])
-        return np.concatenate(rows), np.concatenate(jacobian)
-
-
 def _swung(
-    seen: _Measured,
-    fit: _Fit,
+    seen: Measured,
+    fit: Fit,
     hip: Float[np.ndarray, "N 2 2"],
     pitch: Float[np.ndarray, "N 2"],
     meta: Float[np.ndarray, "N 2"],

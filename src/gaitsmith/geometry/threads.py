@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from functools import wraps
-from typing import TYPE_CHECKING, ParamSpec, TypeVar
+import sys
+from functools import cache, wraps
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -17,9 +18,15 @@ def on_one_thread(function: Callable[_In, _Out]) -> Callable[_In, _Out]:
 
     @wraps(function)
     def alone(*args: _In.args, **kwargs: _In.kwargs) -> _Out:
-        from threadpoolctl import threadpool_limits  # comes with scikit-learn; late, as that
-
-        with threadpool_limits(1):
+        with _libraries("scipy.linalg" in sys.modules, "sklearn" in sys.modules).limit(limits=1):
             return function(*args, **kwargs)
 
     return alone
+
+
+@cache
+def _libraries(*loaded: bool) -> Any:
+    """Those that are loaded once these are: finding them takes a millisecond."""
+    from threadpoolctl import ThreadpoolController  # comes with scikit-learn; late, as that
+
+    return ThreadpoolController()
