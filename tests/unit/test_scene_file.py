@@ -44,6 +44,7 @@ def test_every_key_is_read(read, tmp_path):
         name = "ann"
         body = "ann.toml"
         gait = "winter"
+        legs = "elevation"
         start = {at = [1, -2.5], facing = 90}
         begin = 1.5
         do = "walk to 3,0 speed 0.9; stand 1"
@@ -88,6 +89,7 @@ def test_every_key_is_read(read, tmp_path):
     assert (ann.speed, ann.cadence, ann.step_width) == (1.1, 100, 0.12)
     assert ann.toe_out == (np.radians(4.0), np.radians(8.0))
     assert (ann.variation, ann.seed) == (0.5, 7)
+    assert [w.legs for w in scene.walkers] == ["elevation", *["kinematic"] * 4]
     assert way.path.length > 4.0
     assert line.path.straight
     assert isinstance(steps.steps, GivenSteps)

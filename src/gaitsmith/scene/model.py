@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from gaitsmith._checks import number
+from gaitsmith._checks import number, one_of
 from gaitsmith.errors import InvalidInputError
 from gaitsmith.motion.performance import checked_name
 from gaitsmith.plan.start import Start, start_of
 from gaitsmith.plan.surroundings import Surroundings
 from gaitsmith.scene.grounds import checked_ground
+from gaitsmith.synthesis.gaits import WALKERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -52,6 +53,8 @@ class Walker:
         nodes and keys.
     body, gait, gaits
         Who, and how; what the gaits mean that actions name.
+    legs
+        The ``walker`` of :func:`gaitsmith.walk`: ``"kinematic"`` or ``"elevation"``.
     do, path, steps, distance
         Where; exactly one of them.
     start
@@ -82,10 +85,12 @@ class Walker:
     variation: float = 0.0
     seed: int | None = None
     gaits: Mapping[str, str | Path | LearnedGait | dict[str, Any]] | None = None
+    legs: str = "kinematic"
 
     def __post_init__(self) -> None:
         """Check what does not depend on the body."""
         checked_name(self.name)
+        one_of("legs", self.legs, WALKERS)
         if self.start is not None:
             start = start_of(self.start)
             if not isinstance(start, Start):

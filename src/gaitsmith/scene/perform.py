@@ -94,6 +94,7 @@ def perform(scene: Scene | str | Path, *, fps: float = 60.0, seed: int = 0) -> P
 def _walked(walker: Walker, scene: Scene, named: str, fps: float, seed: int) -> Motion:
     """The motion of one walker; its warnings say whose they are."""
     arguments: dict[str, Any] = {name: getattr(walker, name) for name in SHARED}
+    arguments["walker"] = walker.legs
     if walker.start is not None:
         arguments["start"] = walker.start
     with warnings.catch_warnings(record=True) as caught:

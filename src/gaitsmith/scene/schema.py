@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -317,6 +317,7 @@ class WalkerTable(Table):
     name: Name | None = None
     body: Annotated[Any, PlainValidator(_body)] = 1.75
     gait: Annotated[Any, PlainValidator(_gait)] = "neutral"
+    legs: Literal["kinematic", "elevation"] = "kinematic"
     start: StartTable | None = None
     begin: Annotated[float, Field(ge=0.0, le=LATEST)] = 0.0
     do: (

@@ -37,6 +37,7 @@ class CyclesOverlay:
 
     def __init__(self, cycles: Sequence[Cycle], leg_length: float) -> None:
         self.strides = max(cycle.strides for cycle in cycles)
+        self.cycle = cycles[0]
         self._usual = CycleOverlay(cycles[0], leg_length)
         ratios = [0.5 * cycle.stride_length / leg_length for cycle in cycles]
         order = np.argsort(ratios, kind="stable")

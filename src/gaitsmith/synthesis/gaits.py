@@ -173,11 +173,13 @@ def by_elevation(gait: Gait) -> Gait:
     pairs = gait.walk.prototypes
     left, right = pairs[len(pairs) // 2]
     length = 0.5 * (left.length + right.length)
-    overlay = gait.overlay
+    overlay, cycle = gait.overlay, neutral_cycle()
+    if isinstance(overlay, CycleOverlay | CyclesOverlay):
+        cycle = overlay.cycle
     legs = Legs(
         walk=gait.walk,
         body=left.body,
-        cycle=(cycle := overlay.cycle if isinstance(overlay, CycleOverlay) else neutral_cycle()),
+        cycle=cycle,
         length=length,
         step_time=0.5 * cycle.duration,
         source="legs of the gait",
