@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 
 import numpy as np
@@ -10,6 +11,7 @@ from judge import along_soles, broken, posed
 from people import person
 
 import gaitsmith
+from gaitsmith.errors import InfeasibleError
 from gaitsmith.ground import HeightField, Slope, Stairs
 
 SIDES = ("left", "right")
@@ -177,3 +179,29 @@ def test_nobody_starts_or_ends_standing_across_a_ridge(aslant):
         np.testing.assert_allclose(place[feet].mean(axis=0), [0.0, end], atol=0.021)
     assert min(out) > 0.03
     assert max(out) <= 0.21
+
+
+# ----------------------------------------------------------------------------- refusals
+
+
+@pytest.mark.parametrize(
+    ("how", "what", "z", "ground"),
+    [
+        ("path", "0,0 {}", 1.5, "stairs:0.15,0.3,20"),
+        ("do", "walk to {}", 1.5, "stairs:0.15,0.3,20"),
+        ("do", "be at {} facing 90", 1.45, "stairs:0.15,0.4,3"),
+        ("do", "be at {}", 1.45, "stairs:-0.15,0.4,3"),
+    ],
+)
+def test_the_place_that_a_refusal_names_works(how, what, z, ground):
+    with pytest.raises(InfeasibleError, match=r"place for .+ is \(") as refusal:
+        gaitsmith.walk(**{how: what.format(f"0,{z}")}, ground=ground)
+    x, near = re.search(r"is \((\S+), (\S+)\)", str(refusal.value)).groups()
+    assert abs(float(near) - z) < 0.2
+    gaitsmith.walk(**{how: what.format(f"{float(x):g},{near}")}, ground=ground)
+
+
+def test_the_steepest_slope_is_walked_and_a_steeper_one_refused_with_a_way_out():
+    assert broken(walked(Slope(30.0))) == {}
+    with pytest.raises(InfeasibleError, match=r"slopes by 30.4 deg, .* make it less steep, or"):
+        gaitsmith.walk(distance=3.0, ground=Slope(30.4))
