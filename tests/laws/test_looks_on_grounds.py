@@ -109,6 +109,16 @@ def test_hips_neither_jerk_nor_stop_where_slopes_change():
     assert change.max() < 12.0
 
 
+@pytest.mark.filterwarnings("ignore::gaitsmith.errors.GaitsmithWarning")
+def test_hips_go_over_a_box_without_a_jerk():
+    """What holds them back comes and goes with the steps: 18 m/s2 with a corner where it ends."""
+    z = np.arange(-0.6, 4.6, 0.02)
+    height = np.where((z >= 1.6) & (z < 2.4), 0.15, 0.0)
+    ground = HeightField(np.tile(height[:, None], (1, 61)), 0.02, (-0.6, -0.6))
+    root = gaitsmith.walk(distance=4.0, ground=ground, fps=FPS).root_position
+    assert np.abs(np.diff(root[:, 2], 2)).max() * FPS**2 < 10.0
+
+
 # ------------------------------------------------------------------------------- stairs
 
 

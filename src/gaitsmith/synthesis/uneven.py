@@ -16,10 +16,10 @@ from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.rotations import exp, log, multiply
 from gaitsmith.synthesis.overlay import upper_joints
 from gaitsmith.synthesis.step import BatchGenerator, PreparedStep, TabledStep, WalkerState
-from gaitsmith.synthesis.uphill import heel_rises, held_back, with_risen_heels
+from gaitsmith.synthesis.uphill import heel_rises, held_back, holding, with_risen_heels
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from jaxtyping import Bool, Float
 
@@ -207,10 +207,11 @@ def _lifted(
     """``reference``, which is level, on the ground."""
     curves = reference.curves
     at = curves.center[:, [0, 2]] + reference.origin[[0, 2]]
-    base, slope = _base(step, lie, pick, at, curves.phase)
+    base, blend = _base(step, lie, pick, at, curves.phase)
+    slope = blend(lie.slope)
     lifted = StepCurves.trusted(curves.phase, np.array(curves.table))
     lifted.center[:] += base[:, None] * UP
-    back = held_back(slope, curves.phase, step.kind, body)
+    back = blend(held_back(lie.slope, body)) * holding(curves.phase, step.kind)
     lifted.center[:] -= back[:, None] * ahead(curves.heading)
     lifted.ankle[..., 1] += base[:, None]
     lifted.pitch[:], lifted.bend[:] = _landing(reference, lie, pick, body)
@@ -285,15 +286,17 @@ def _base(
     pick: list[int],
     at: Float[np.ndarray, "T 2"],
     phase: Float[np.ndarray, "T"],
-) -> tuple[Float[np.ndarray, "T"], Float[np.ndarray, "T"]]:
-    """Level of the ground as the hips feel it, and its slope along the walk."""
+) -> tuple[Float[np.ndarray, "T"], Callable[[Float[np.ndarray, "k"]], Float[np.ndarray, "T"]]]:
+    """Level of the ground as the hips feel it; and what makes values at footsteps theirs too."""
     rear, stance, target = pick
     if step.kind in LOCAL_KINDS:
         first = 0.5 * (lie.plane(rear, at) + lie.plane(stance, at))
         last = 0.5 * (lie.plane(target, at) + lie.plane(stance, at))
         share = smoothstep(phase)
-        slope = (1.0 - share) * lie.slope[rear] + share * lie.slope[target]
-        return (1.0 - share) * first + share * last, slope
+        return (
+            (1.0 - share) * first + share * last,
+            lambda values: (1.0 - share) * values[rear] + share * values[target],
+        )
 
     def between(a: int, b: int) -> Float[np.ndarray, "T"]:
         way = lie.place[b] - lie.place[a]
@@ -307,9 +310,13 @@ def _base(
         before = np.ones(len(at))
     base = (1.0 - before) * lie.plane(rear, at) + before * lie.plane(stance, at)
     base = base + after * (lie.plane(target, at) - lie.plane(stance, at))
-    slope = lie.slope[rear] + before * (lie.slope[stance] - lie.slope[rear])
-    slope = slope + after * (lie.slope[target] - lie.slope[stance])
-    return base, slope
+
+
+    def blend(values: Float[np.ndarray, "k"]) -> Float[np.ndarray, "T"]:
+        early = values[rear] + before * (values[stance] - values[rear])
+        return early + after * (values[target] - values[stance])
+
+    return base, blend
 
 
 def _lean(slope: Float[np.ndarray, "T"]) -> Float[np.ndarray, "T"]:
