@@ -112,11 +112,32 @@ def test_hips_neither_jerk_nor_stop_where_slopes_change():
 @pytest.mark.filterwarnings("ignore::gaitsmith.errors.GaitsmithWarning")
 def test_hips_go_over_a_box_without_a_jerk():
     """What holds them back comes and goes with the steps: 18 m/s2 with a corner where it ends."""
-    z = np.arange(-0.6, 4.6, 0.02)
-    height = np.where((z >= 1.6) & (z < 2.4), 0.15, 0.0)
-    ground = HeightField(np.tile(height[:, None], (1, 61)), 0.02, (-0.6, -0.6))
-    root = gaitsmith.walk(distance=4.0, ground=ground, fps=FPS).root_position
+    root = gaitsmith.walk(distance=4.0, ground=box(0.15, 0.8), fps=FPS).root_position
     assert np.abs(np.diff(root[:, 2], 2)).max() * FPS**2 < 10.0
+
+
+@pytest.mark.filterwarnings("ignore::gaitsmith.errors.GaitsmithWarning")
+def test_hips_rise_less_than_a_box_that_one_foot_steps_on():
+    """The knee on it bends; 15 and 18 cm before."""
+    for high, most in ((0.15, 0.13), (0.2, 0.16)):
+        motion = walk_over(high)
+        assert (motion.labels.footstep_position[:, 1] > 0.01).sum() == 1
+        hips = motion.root_position
+        over = (
+            hips[hips[:, 2] > 1.2, 1].max() - hips[(hips[:, 2] > 0.4) & (hips[:, 2] < 1.2), 1].max()
+        )
+        assert 0.6 * high < over < most
+        assert broken(motion, but=("footsteps_unseen",)) == {}
+
+
+def walk_over(high):
+    return gaitsmith.walk(distance=4.0, ground=box(high, 0.6), fps=FPS)
+
+
+def box(high, length):
+    z = np.arange(-0.6, 4.6, 0.02)
+    height = np.where((z >= 1.6) & (z < 1.6 + length), high, 0.0)
+    return HeightField(np.tile(height[:, None], (1, 61)), 0.02, (-0.6, -0.6))
 
 
 # ------------------------------------------------------------------------------- stairs

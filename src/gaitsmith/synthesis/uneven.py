@@ -45,6 +45,8 @@ NEARLY_FLAT = float(np.radians(2.5))
 HEEL_DOWN = 0.3
 #: The heel that stays above on a deep step comes up so much more (radians).
 HEEL_UP = float(np.radians(24.0))
+#: Part of the height of what one foot alone steps on that the hips do not rise: its knee bends.
+SPARED = 0.25
 #: A lower rise (m) is no step.
 LEAST_STEP = 0.02
 
@@ -196,9 +198,26 @@ def _lie(
         rise[c] = position[c, 1] - position[b, 1]
     if ground.stepped:
         stepped = np.abs(rise) > LEAST_STEP
+        level = _over_boxes(steps, number, level, stepped)
     hangs = np.zeros_like(stepped) if stands.bears is None else ~stands.bears[:, HEEL]
     gradient = slope[:, None] * way + across
     return Lie(place, level, gradient, slope, rise, stepped, hangs), stands
+
+
+def _over_boxes(
+    steps: Sequence[PlannedStep],
+    number: dict[int, int],
+    level: Float[np.ndarray, "k"],
+    stepped: Bool[np.ndarray, "k"],
+) -> Float[np.ndarray, "k"]:
+    """``level`` as the hips take it: what one foot alone steps on they rise less for."""
+    out = np.array(level)
+    for step in steps:
+        a, b, c = (number[id(f)] for f in _feet(step))
+        if step.kind == "walk" and stepped[b] and stepped[c]:
+            peak = min(level[b] - level[a], level[b] - level[c])
+            out[b] -= SPARED * max(peak, 0.0)
+    return out
 
 
 def _lifted(
@@ -310,7 +329,6 @@ def _base(
         before = np.ones(len(at))
     base = (1.0 - before) * lie.plane(rear, at) + before * lie.plane(stance, at)
     base = base + after * (lie.plane(target, at) - lie.plane(stance, at))
-
 
     def blend(values: Float[np.ndarray, "k"]) -> Float[np.ndarray, "T"]:
         early = values[rear] + before * (values[stance] - values[rear])
