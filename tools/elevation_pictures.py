@@ -7,10 +7,13 @@ anew, the measured man, the exact walker and the product's.
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+from ground_pictures import FIGURES
+from PIL import Image
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt
@@ -153,9 +156,29 @@ def figures() -> None:
     figure.savefig(PICTURES / "elevation-figures.png")
 
 
+def people() -> None:
+    """One data set walks three figures, and up and down a slope: the product's walker."""
+    asked = ((1.75, "flat"), (1.2, "flat"), (2.1, "flat"), (1.75, "slope:10"), (1.75, "slope:-10"))
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for body, ground in asked:
+            motion = gaitsmith.walk(distance=6.0, body=body, ground=ground, walker="elevation")
+            sheet = Image.open(gaitsmith.save(motion, Path(folder) / "sheet.png")).convert("RGB")
+            top, bottom = (int(share * sheet.height) for share in FIGURES)
+            rows.append(sheet.crop((0, top, sheet.width, bottom)))
+    out = Image.new("RGB", (rows[0].width, sum(row.height for row in rows)), "white")
+    below = 0
+    for row in rows:
+        out.paste(row, (0, below))
+        below += row.height
+    out = out.resize((out.width * 5 // 8, out.height * 5 // 8), Image.Resampling.LANCZOS)
+    out.quantize(96).save(PICTURES / "elevation-people.png", optimize=True)
+
+
 def main() -> None:
     """Write the pictures."""
     figures()
+    people()
     figure, axes = plt.subplots(2, 3, figsize=(13.0, 7.2), dpi=110)
     for ax, (title, height, degrees) in zip(axes.flat, PANELS, strict=False):
         sticks(ax, height, degrees)

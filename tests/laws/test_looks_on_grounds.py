@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 
 import numpy as np
@@ -10,6 +11,7 @@ from judge import along_soles, broken, posed
 from people import person
 
 import gaitsmith
+from gaitsmith.errors import InfeasibleError
 from gaitsmith.ground import HeightField, Slope, Stairs
 
 SIDES = ("left", "right")
@@ -107,6 +109,37 @@ def test_hips_neither_jerk_nor_stop_where_slopes_change():
     assert change.max() < 12.0
 
 
+@pytest.mark.filterwarnings("ignore::gaitsmith.errors.GaitsmithWarning")
+def test_hips_go_over_a_box_without_a_jerk():
+    """What holds them back comes and goes with the steps: 18 m/s2 with a corner where it ends."""
+    root = gaitsmith.walk(distance=4.0, ground=box(0.15, 0.8), fps=FPS).root_position
+    assert np.abs(np.diff(root[:, 2], 2)).max() * FPS**2 < 10.0
+
+
+@pytest.mark.filterwarnings("ignore::gaitsmith.errors.GaitsmithWarning")
+def test_hips_rise_less_than_a_box_that_one_foot_steps_on():
+    """The knee on it bends; 15 and 18 cm before."""
+    for high, most in ((0.15, 0.13), (0.2, 0.16)):
+        motion = walk_over(high)
+        assert (motion.labels.footstep_position[:, 1] > 0.01).sum() == 1
+        hips = motion.root_position
+        over = (
+            hips[hips[:, 2] > 1.2, 1].max() - hips[(hips[:, 2] > 0.4) & (hips[:, 2] < 1.2), 1].max()
+        )
+        assert 0.6 * high < over < most
+        assert broken(motion, but=("footsteps_unseen",)) == {}
+
+
+def walk_over(high):
+    return gaitsmith.walk(distance=4.0, ground=box(high, 0.6), fps=FPS)
+
+
+def box(high, length):
+    z = np.arange(-0.6, 4.6, 0.02)
+    height = np.where((z >= 1.6) & (z < 1.6 + length), high, 0.0)
+    return HeightField(np.tile(height[:, None], (1, 61)), 0.02, (-0.6, -0.6))
+
+
 # ------------------------------------------------------------------------------- stairs
 
 
@@ -177,3 +210,29 @@ def test_nobody_starts_or_ends_standing_across_a_ridge(aslant):
         np.testing.assert_allclose(place[feet].mean(axis=0), [0.0, end], atol=0.021)
     assert min(out) > 0.03
     assert max(out) <= 0.21
+
+
+# ----------------------------------------------------------------------------- refusals
+
+
+@pytest.mark.parametrize(
+    ("how", "what", "z", "ground"),
+    [
+        ("path", "0,0 {}", 1.5, "stairs:0.15,0.3,20"),
+        ("do", "walk to {}", 1.5, "stairs:0.15,0.3,20"),
+        ("do", "be at {} facing 90", 1.45, "stairs:0.15,0.4,3"),
+        ("do", "be at {}", 1.45, "stairs:-0.15,0.4,3"),
+    ],
+)
+def test_the_place_that_a_refusal_names_works(how, what, z, ground):
+    with pytest.raises(InfeasibleError, match=r"place for .+ is \(") as refusal:
+        gaitsmith.walk(**{how: what.format(f"0,{z}")}, ground=ground)
+    x, near = re.search(r"is \((\S+), (\S+)\)", str(refusal.value)).groups()
+    assert abs(float(near) - z) < 0.2
+    gaitsmith.walk(**{how: what.format(f"{float(x):g},{near}")}, ground=ground)
+
+
+def test_the_steepest_slope_is_walked_and_a_steeper_one_refused_with_a_way_out():
+    assert broken(walked(Slope(30.0))) == {}
+    with pytest.raises(InfeasibleError, match=r"slopes by 30.4 deg, .* make it less steep, or"):
+        gaitsmith.walk(distance=3.0, ground=Slope(30.4))

@@ -48,6 +48,8 @@ STRAIGHT, UNHURRIED, KNEE_COST = 0.9995, 0.1, 6000.0
 #: Bend of the ankle (radians, toes up) beyond which a swinging foot hangs, by which share of what
 #: is more, how softly (radians) that sets in, and over what part of the swing at its ends.
 BENT_UP, HANGS, SOFTLY, HANGING = float(np.radians(12.0)), 0.8, float(np.radians(3.0)), 0.25
+#: By how much more (radians a sample) the knee may turn for it.
+STILL_CALM = 0.01
 #: Rounds of the beam's solver, and its penalty.
 ROUNDS, PENALTY = 160, 1.5e4
 
@@ -100,9 +102,13 @@ def over_edges(flights: Flights, body: Body, ground: Ground) -> Flights:
     moved = read(warped(u, by[:, None]))
     moved[..., 1] = plain[..., 1]
     moved[..., :3] -= (back[:, None] * _drawn_back(u))[..., None] * ahead_[:, None]
-    hangs = _hanging(moved[..., :3] + lift[..., None] * UP - hip, moved[..., 3:5], u, body)
+    leg = moved[..., :3] + lift[..., None] * UP - hip
+    hangs = _hanging(leg, moved[..., 3:5], u, body)
     moved[..., 4] -= hangs
-    lift = beam(_needed(f, moved, u, body, ground))
+    higher = beam(_needed(f, moved, u, body, ground))
+    hurried = _knee_haste(moved[..., :3] + higher[..., None] * UP - hip, body)
+    calm = (hurried <= _knee_haste(leg, body) + STILL_CALM)[:, None]
+    lift, hangs = np.where(calm, higher, lift), np.where(calm, hangs, 0.0)
     by, back = by[f.swing], back[f.swing]
     out = pchip(axis, columns, 2.0 * f.swing + warped(f.u, by))
     more = np.stack([lift, hangs], axis=-1).reshape(-1, 2)

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.conventions import SIDE_SIGN, leftward
+from gaitsmith.conventions import SIDE_SIGN, ahead, leftward
 from gaitsmith.errors import InfeasibleError
 from gaitsmith.ground import Flat, HeightField, Slope
 from gaitsmith.plan.footing import Footing, footing
 from gaitsmith.plan.lengths import FIRST_STEP, Stance
+from gaitsmith.plan.nearest import nearest_stand, said
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -141,7 +142,7 @@ def tread(
         if found is not None:
             break
     else:
-        raise _no_way(path, places, length, body, ground, stop, first)
+        raise _no_way(path, places, length, body, ground, stop, first, stance)
     index, sides = found
     height = np.array([places.footings[s].height[j] for s, j in zip(sides, index, strict=True)])
     full = FULL_RISE * body.leg_length
@@ -204,7 +205,7 @@ def _cheapest(
             f.stands[end] & (f.hangs[end] <= hanging) & (f.sinks[end] <= ON_RIDGES)
             for f in places.footings
         ]
-    free &= np.stack([f.slope <= np.tan(STEEPEST) for f in places.footings])
+    free &= np.stack([f.slope <= np.tan(STEEPEST) + 1e-9 for f in places.footings])
     own = np.stack(
         [
             HANGING * f.hangs**2 + CROWDED * f.crowded + ROUGH * (100.0 * f.rough) ** 2
@@ -276,6 +277,7 @@ def _no_way(
     ground: Ground,
     stop: str,
     first: int,
+    stance: Stance,
 ) -> InfeasibleError:
     """Why there is no way on, where, and what would do."""
     furthest: list[int] = []
@@ -286,10 +288,14 @@ def _no_way(
     for word, k in ends:
         if all(f.stands[k] and f.hangs[k] <= SHORT_TREADS for f in places.footings):
             continue
-        x, z = path.at(places.along[[k]])[0]
+        middle, way = path.at(places.along[[k]])[0], float(places.heading[k])
+        aside = 0.5 * stance.width * leftward(way)[[0, 2]]
+        feet = middle + np.array(SIDE_SIGN)[:, None] * aside
+        facing = way + np.array(SIDE_SIGN) * np.array(stance.toe_out)
+        near = nearest_stand(ground, body, feet, facing, ahead(way)[[0, 2]])
         return InfeasibleError(
-            f"the path {word} at ({x:.2f}, {z:.2f}), where feet cannot stand side by side: an edge "
-            "is under them or before them; move it by a foot's length"
+            f"the path {word} at ({middle[0]:.2f}, {middle[1]:.2f}), where feet cannot stand side "
+            f"by side: an edge is under them or before them{said(near, 'it')}"
         )
     reach, limit = LONGEST * body.leg_length, HIGHEST * body.leg_length
     s = float(places.along[j]) + np.arange(0.0, reach, 0.005)

@@ -14,6 +14,7 @@ from gaitsmith.ground import Flat, Slope
 from gaitsmith.plan.footholds import HIGHEST, MOST_HANGING, MOST_SUNK, SHORT_TREADS, STEEPEST
 from gaitsmith.plan.footing import footing
 from gaitsmith.plan.footsteps import StepPlan
+from gaitsmith.plan.nearest import nearest_stand, said
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -106,7 +107,7 @@ def _timeline(plan: Timeline, body: Body, ground: Ground) -> Timeline:
     each = list(feet.values())
     place = np.array([f.position for f in each])
     heading, side = np.array([f.heading for f in each]), np.array([f.side for f in each])
-    place[:, 1] = _heights(place, heading, side, body, ground)
+    place[:, 1] = _heights(place, heading, side, body, ground, led=True)
     new = {id(f): replace(f, position=p) for f, p in zip(each, place, strict=True)}
 
     def moved(foot: Footstep | None) -> Footstep | None:
@@ -128,30 +129,40 @@ def _heights(
     side: np.ndarray,
     body: Body,
     ground: Ground,
+    *,
+    led: bool = False,
 ) -> Float[np.ndarray, "N"]:
-    """Heights of N; refuses places where no foot stands."""
+    """Heights of N; refuses places where no foot stands. ``led``: by a script."""
     found = footing(ground, position[:, [0, 2]], heading, body.foot)
-    steep = found.slope > np.tan(STEEPEST)
+    steep = found.slope > np.tan(STEEPEST) + 1e-9
     bad = steep | ~found.stands | (found.hangs > SHORT_TREADS)
     if bad.any():
-        i = int(bad.argmax())
+        # what can be changed of a script is where it leads to
+        last = len(bad) - 2
+        i = last + int(bad[last:].argmax()) if led and bad[last:].any() else int(bad.argmax())
         what = (
             f"footstep {i + 1} ({SIDES[side[i]]}) at ({position[i, 0]:.2f}, {position[i, 2]:.2f})"
         )
+        # feet that stand where the way ends are moved together
+        feet = [i] if i < last else [last, last + 1]
+        near = None
+        if not isinstance(ground, Slope):
+            near = nearest_stand(ground, body, position[feet][:, [0, 2]], heading[feet])
+        elsewhere = said(near, "it" if len(feet) == 1 else "the middle of both feet")
         if steep[i]:
             raise InfeasibleError(
-                f"{what}: the ground slopes by {np.degrees(np.arctan(found.slope[i])):.0f} deg, "
-                f"more than the {np.degrees(STEEPEST):.0f} deg that can be walked on; lead the "
-                "way round it"
+                f"{what}: the ground slopes by {np.degrees(np.arctan(found.slope[i])):.3g} deg, "
+                f"more than the {np.degrees(STEEPEST):.0f} deg that can be walked on"
+                + ("; make it less steep, or stairs" if isinstance(ground, Slope) else elsewhere)
             )
         if found.stands[i]:
             raise InfeasibleError(
                 f"{what}: {100 * found.hangs[i]:.0f} % of the sole would hang over an edge, more "
-                f"than {100 * SHORT_TREADS:.0f} %; set it farther from the edge"
+                f"than {100 * SHORT_TREADS:.0f} %{elsewhere}"
             )
         raise InfeasibleError(
             f"{what}: a foot of {body.foot.length:.2f} m cannot stand there: an edge or a bump is "
-            "under its ball or in its way; set it elsewhere"
+            f"under its ball or in its way{elsewhere}"
         )
     if (deepest := float(found.sinks.max())) > SINKS:
         warnings.warn(

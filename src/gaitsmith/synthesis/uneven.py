@@ -16,10 +16,10 @@ from gaitsmith.geometry.curves import smoothstep
 from gaitsmith.geometry.rotations import exp, log, multiply
 from gaitsmith.synthesis.overlay import upper_joints
 from gaitsmith.synthesis.step import BatchGenerator, PreparedStep, TabledStep, WalkerState
-from gaitsmith.synthesis.uphill import heel_rises, held_back, with_risen_heels
+from gaitsmith.synthesis.uphill import heel_rises, held_back, holding, with_risen_heels
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from jaxtyping import Bool, Float
 
@@ -45,6 +45,8 @@ NEARLY_FLAT = float(np.radians(2.5))
 HEEL_DOWN = 0.3
 #: The heel that stays above on a deep step comes up so much more (radians).
 HEEL_UP = float(np.radians(24.0))
+#: Part of the height of what one foot alone steps on that the hips do not rise: its knee bends.
+SPARED = 0.25
 #: A lower rise (m) is no step.
 LEAST_STEP = 0.02
 
@@ -226,9 +228,26 @@ def _lie(
         rise[c] = position[c, 1] - position[b, 1]
     if ground.stepped:
         stepped = np.abs(rise) > LEAST_STEP
+        level = _over_boxes(steps, number, level, stepped)
     hangs = np.zeros_like(stepped) if stands.bears is None else ~stands.bears[:, HEEL]
     gradient = slope[:, None] * way + across
     return Lie(place, level, gradient, slope, rise, stepped, hangs), stands
+
+
+def _over_boxes(
+    steps: Sequence[PlannedStep],
+    number: dict[int, int],
+    level: Float[np.ndarray, "k"],
+    stepped: Bool[np.ndarray, "k"],
+) -> Float[np.ndarray, "k"]:
+    """``level`` as the hips take it: what one foot alone steps on they rise less for."""
+    out = np.array(level)
+    for step in steps:
+        a, b, c = (number[id(f)] for f in _feet(step))
+        if step.kind == "walk" and stepped[b] and stepped[c]:
+            peak = min(level[b] - level[a], level[b] - level[c])
+            out[b] -= SPARED * max(peak, 0.0)
+    return out
 
 
 def _lifted(
@@ -237,14 +256,13 @@ def _lifted(
     """``reference``, which is level, on the ground."""
     curves = reference.curves
     at = curves.center[:, [0, 2]] + reference.origin[[0, 2]]
-    base, slope = _base(step, lie, pick, at, curves.phase)
+    base, blend = _base(step, lie, pick, at, curves.phase)
+    slope = blend(lie.slope)
     lifted = StepCurves.trusted(curves.phase, np.array(curves.table))
     lifted.center[:] += base[:, None] * UP
-    back = slope
-    if not lie.level_walk:  # its hips know slopes, but no stairs
-        on_steps = replace(lie, slope=np.where(lie.stepped, lie.slope, 0.0))
-        back = _base(step, on_steps, pick, at, curves.phase)[1]
-    back = held_back(back, curves.phase, step.kind, body)
+    # hips of a walk that climbs know slopes, but no stairs
+    felt = lie.slope if lie.level_walk else np.where(lie.stepped, lie.slope, 0.0)
+    back = blend(held_back(felt, body)) * holding(curves.phase, step.kind)
     lifted.center[:] -= back[:, None] * ahead(curves.heading)
     lifted.ankle[..., 1] += base[:, None]
     lifted.pitch[:], lifted.bend[:] = _landing(reference, lie, pick, body)
@@ -320,15 +338,17 @@ def _base(
     pick: list[int],
     at: Float[np.ndarray, "T 2"],
     phase: Float[np.ndarray, "T"],
-) -> tuple[Float[np.ndarray, "T"], Float[np.ndarray, "T"]]:
-    """Level of the ground as the hips feel it, and its slope along the walk."""
+) -> tuple[Float[np.ndarray, "T"], Callable[[Float[np.ndarray, "k"]], Float[np.ndarray, "T"]]]:
+    """Level of the ground as the hips feel it; and what makes values at footsteps theirs too."""
     rear, stance, target = pick
     if step.kind in LOCAL_KINDS:
         first = 0.5 * (lie.plane(rear, at) + lie.plane(stance, at))
         last = 0.5 * (lie.plane(target, at) + lie.plane(stance, at))
         share = smoothstep(phase)
-        slope = (1.0 - share) * lie.slope[rear] + share * lie.slope[target]
-        return (1.0 - share) * first + share * last, slope
+        return (
+            (1.0 - share) * first + share * last,
+            lambda values: (1.0 - share) * values[rear] + share * values[target],
+        )
 
     def between(a: int, b: int) -> Float[np.ndarray, "T"]:
         way = lie.place[b] - lie.place[a]
@@ -342,9 +362,12 @@ def _base(
         before = np.ones(len(at))
     base = (1.0 - before) * lie.plane(rear, at) + before * lie.plane(stance, at)
     base = base + after * (lie.plane(target, at) - lie.plane(stance, at))
-    slope = lie.slope[rear] + before * (lie.slope[stance] - lie.slope[rear])
-    slope = slope + after * (lie.slope[target] - lie.slope[stance])
-    return base, slope
+
+    def blend(values: Float[np.ndarray, "k"]) -> Float[np.ndarray, "T"]:
+        early = values[rear] + before * (values[stance] - values[rear])
+        return early + after * (values[target] - values[stance])
+
+    return base, blend
 
 
 def _lean(slope: Float[np.ndarray, "T"]) -> Float[np.ndarray, "T"]:

@@ -32,9 +32,8 @@ if TYPE_CHECKING:
 #: How far the hips stay back (over the leg) for a slope (rise per meter); standing it is so much
 #: of it, which holds the balance against the trunk that leans.
 HELD_BACK, STANDING = 0.37, 0.5
-#: Slope that steeper ones, as stairs are, come near to in this, and one up to which it sets in:
-#: where slopes change there is no corner in the way of the hips.
-STEEPEST_BACK, SETS_IN = 0.33, 0.04
+#: Slope that steeper ones, as stairs are, come near to in this.
+STEEPEST_BACK = 0.33
 #: Most that the heel behind comes up for it (radians).
 MOST = float(np.radians(32.0))
 #: Phase of the step from which on: the foot lies flat for a while first, if it ever does.
@@ -47,15 +46,17 @@ LEFT_OVER, STEEPEST_LEFT, FADES = 0.6, 1.2, 0.6
 STEEP, LEAST = 0.02, float(np.radians(1.0))
 
 
-def held_back(
-    slope: Float[np.ndarray, "T"], phase: Float[np.ndarray, "T"], kind: StepKind, body: Body
-) -> Float[np.ndarray, "T"]:
-    """How far the hips stay back in a step for the slope along the walk, meters."""
+def held_back(slope: Float[np.ndarray, "k"], body: Body) -> Float[np.ndarray, "k"]:
+    """How far the hips of who walks stay back for a slope along the walk, meters."""
+    up = np.maximum(slope, 0.0)
+    return HELD_BACK * body.leg_length * STEEPEST_BACK * np.tanh(up / STEEPEST_BACK)
+
+
+def holding(phase: Float[np.ndarray, "T"], kind: StepKind) -> Float[np.ndarray, "T"]:
+    """Share of it that is held in a step: less where somebody stands."""
     ends = {"start": (STANDING, 1.0), "walk": (1.0, 1.0), "stop": (1.0, STANDING)}
     first, last = ends.get(kind, (STANDING, STANDING))
-    share = first + (last - first) * smoothstep(phase)
-    soft = STEEPEST_BACK * np.tanh(slope / STEEPEST_BACK) * smoothstep(slope / SETS_IN)
-    return HELD_BACK * body.leg_length * share * soft
+    return first + (last - first) * smoothstep(phase)
 
 
 @dataclass(frozen=True, eq=False)
