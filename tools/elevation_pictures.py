@@ -12,7 +12,6 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
-from ground_pictures import FIGURES
 from PIL import Image
 
 mpl.use("Agg")
@@ -28,6 +27,8 @@ from gaitsmith.synthesis.elevation_exact import ExactWalker
 from gaitsmith.walks.elevation_sets import built_in_sets, neutral_legs
 from gaitsmith.walks.interpolate import ElevInterp
 
+#: Share of the height of a contact sheet that shows the figures.
+FIGURES = (0.072, 0.28)
 PICTURES = Path(__file__).parent.parent / "docs/pictures"
 COLORS = ("#3567a8", "#b5543c")
 PANELS = (
