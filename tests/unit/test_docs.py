@@ -93,16 +93,24 @@ def test_every_block_says_what_it_is(page):
 
 
 @pytest.mark.parametrize("page", marked(named({"python"})), ids=ids)
-def test_the_python_of_a_page_runs_as_printed(page, tmp_path, monkeypatch):
-    """One namespace a page, from the top, as a reader would type it."""
+def test_the_python_of_a_page_runs_as_printed(page, tmp_path, monkeypatch, capsys):
+    """One namespace a page, from the top, as a reader would type it.
+
+    A block of text that follows at once is what it prints.
+    """
     monkeypatch.chdir(tmp_path)
     save_files(page, tmp_path)
     namespace: dict[str, object] = {"__name__": "__tutorial__"}
-    for block in blocks(page):
+    every = blocks(page)
+    for block, after in zip(every, [*every[1:], None], strict=True):
         if block.language == "python":
             # blank lines put the traceback on the page's own lines
             code = compile("\n" * (block.line - 1) + block.text, str(page), "exec")
             exec(code, namespace)
+            said = capsys.readouterr().out
+            behind = block.line + block.text.count("\n") + 3  # fence, empty line, fence
+            if after is not None and (after.language, after.line) == ("text", behind):
+                assert said == after.text
 
 
 @pytest.mark.parametrize("page", marked(named(SHELL)), ids=ids)
