@@ -173,14 +173,6 @@ def test_who_turns_on_a_tread_comes_to_stand_there_without_a_jolt(ground, do):
     assert legs(motion)[0][-1].max() < 12.0
 
 
-def test_feet_that_do_not_roll_leave_a_step_without_a_jump():
-    """Of a local step down: the heel that is up behind is not let go at once."""
-    motion = gaitsmith.walk(
-        do="be at -0.12,1.02 facing -94", ground=Stairs(-0.156, 0.425, 4), fps=FPS
-    )
-    assert broken(motion, but=("footsteps_unseen",)) == {}
-
-
 # ------------------------------------------------------------------------------- length
 
 
