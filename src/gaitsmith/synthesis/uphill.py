@@ -41,6 +41,8 @@ RISES, LIES, LATEST = 0.4, 0.05, 0.7
 #: Part of it that is left as the foot leaves, unless the sole is steeper than that (radians), and
 #: the part of the swing in which that fades.
 LEFT_OVER, STEEPEST_LEFT, FADES = 0.6, 1.2, 0.6
+#: A foot rolls on that turns by so much before it leaves (radians).
+ROLLS = float(np.radians(10.0))
 #: Slope (rise per meter) from which on it comes up as far as it must; a lower rise (radians) is
 #: none: that heel would stay on the ground and not be told from one that bears.
 STEEP, LEAST = 0.02, float(np.radians(1.0))
@@ -162,8 +164,12 @@ def with_risen_heels(reference: ReferenceStep, behind: float, rises: float) -> R
     own = rises * smoothstep((phase - first) / (1.0 - first))
     rolls = pitch[:, 1 - stance]
     leaves = float(rolls[np.searchsorted(phase, off)])
-    left = min(LEFT_OVER * behind, max(STEEPEST_LEFT + leaves, 0.0))
-    share = np.clip((leaves - rolls) / min(leaves - float(rolls[0]), -1e-9), 0.0, 1.0)
+    further = float(rolls[0]) - leaves
+    if further > ROLLS:
+        left = min(LEFT_OVER * behind, max(STEEPEST_LEFT + leaves, 0.0))
+        share = np.clip((rolls - leaves) / further, 0.0, 1.0)
+    else:  # a foot that is lifted as it is, in a local step
+        left, share = 0.0, 1.0 - smoothstep(phase / off)
     fades = 1.0 - smoothstep((phase - off) / max(FADES * (1.0 - off), 1e-9))
     other = np.where(phase <= off, left + (behind - left) * share, left * fades)
     for side, more in ((stance, own), (1 - stance, other)):
