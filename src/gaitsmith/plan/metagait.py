@@ -53,6 +53,8 @@ TOE_OUT_FROM, TOE_OUT_MOST = float(np.radians(45.0)), float(np.radians(25.0))
 TOE_IN = 0.5
 #: The pelvis turns so far beyond the foot that bears, radians (people's hips: 45 deg).
 HIP_ROTATION = float(np.radians(38.0))
+#: Who starts with a turn of more than this (radians) to the left starts with the left foot.
+INSIDE = 0.1
 #: Last step before the feet are closed over the others.
 LAST_STEP = 0.7
 #: Change of step length over the leg, and of duration, from one step to the next.
@@ -208,7 +210,7 @@ class MetaGait:
         return out
 
     def ahead(
-        self, feet: Sequence[Landing], wish: Wish, count: int, *, close: bool = True
+        self, feet: Sequence[Landing], wish: Wish, count: int, *, moving: Landing | None = None
     ) -> list[Landing]:
         """The next ``count`` footsteps after ``feet``; fewer where the person comes to stand.
 
@@ -220,17 +222,18 @@ class MetaGait:
             What is wished of all of them.
         count
             How many.
-        close
-            Whether the first may close the feet. In mid-swing it may not: the foot then makes
-            a short step, and the next one closes.
+        moving
+            Where the swinging foot was to land so far; None: no foot swings. The first footstep
+            is then of that foot. It closes the feet only if it was to, else it is a short step,
+            and the next one closes.
         """
         out = list(feet)
         for _ in range(count):
-            following = self._next(out, wish, close=close)
+            following = self._next(out, wish, moving)
             if following is None:
                 break
             out.append(following)
-            close = True
+            moving = None
         return out[len(feet) :]
 
     def plan(self, feet: Sequence[Landing]) -> StepPlan:
@@ -277,16 +280,17 @@ class MetaGait:
 
     # ------------------------------------------------------------------ one footstep
 
-    def _next(self, feet: list[Landing], wish: Wish, *, close: bool) -> Landing | None:
-        last = feet[-1]
+    def _next(self, feet: list[Landing], wish: Wish, moving: Landing | None) -> Landing | None:
+        last, close = feet[-1], moving is None or moving.kind == "stop"
         done = wish.stop or (wish.heading is None and self._arrived(last))
-        if last.stands and done:
+        if last.stands and done and close:
             return None
         if done and close and (last.closes or last.length < SHORTEST * self._body.leg_length):
             return self._closing(last, wish)
         first = self._chord(last, wish)
         if last.stands:
-            side = LEFT if first.turn > 0.1 else RIGHT
+            side = LEFT if first.turn > INSIDE else RIGHT
+            side = side if moving is None else moving.side
             stance = feet[-1] if feet[-1].side != side else feet[-2]
         else:
             side, stance = 1 - last.side, last

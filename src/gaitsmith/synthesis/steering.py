@@ -147,7 +147,7 @@ class Steering:
         phase = float(self.run.phase(np.array([time]))[0])
         rate = self.run.rate(time)
         self._changed = False
-        (new,) = self.gait.ahead(self.feet, self.wish, 1, close=self.target.kind == "stop")
+        (new,) = self.gait.ahead(self.feet, self.wish, 1, moving=self.target)
         old, left = self.target, self.run.end - time
         away = float(np.linalg.norm((new.position - old.position)[[0, 2]]))
         turned = abs(new.heading - old.heading)
