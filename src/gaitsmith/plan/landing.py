@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 import numpy as np
 
 from gaitsmith.ground import Flat, foot_plane
+from gaitsmith.ground.nearness import edges_near
 from gaitsmith.plan.footholds import (
     CROWDED,
     FULL_RISE,
@@ -106,11 +107,18 @@ class LandingSearch:
         if isinstance(self._ground, Flat):
             foot = landing(length)
             return self._on_ground(foot), 1.0
-        if not self._ground.stepped:
+        if not self._jumps(landing(length).position[[0, 2]]):
             found = self._on_slope(landing, length, before, keep_length=keep_length)
             if found is not None:
                 return found
         return self._among(landing, length, before)
+
+    def _jumps(self, place: Float[np.ndarray, "2"]) -> bool:
+        """Whether the ground jumps anywhere near a step to ``place``."""
+        if not self._ground.stepped:
+            return False
+        x, z = place.tolist()
+        return len(edges_near(self._ground, x, z, self._body.leg_length)) > 0
 
     def _on_ground(self, foot: T) -> T:
         position = self.placed(foot.position[[0, 2]], foot.heading)

@@ -59,8 +59,12 @@ INSIDE = 0.1
 LAST_STEP = 0.7
 #: Change of step length over the leg, and of duration, from one step to the next.
 LENGTH_CHANGES, DURATION_CHANGES = 0.3, 1.25
-#: Feet are set so far apart (m), in so many parts, farther than usual at most by the last.
+#: Axes of feet are set so far apart (m), in turns of the second angle (radians) farther by the first
+#: length, in so many parts of the first.
 APART, APART_PART, APART_MOST = 0.07, 0.01, 12
+APART_TURNING, APART_TURN = 0.025, float(np.radians(25.0))
+#: Largest change of the walk's direction from one footstep to the next, radians.
+LARGEST_CHANGE = float(np.radians(40.0))
 #: How far the feet come across as the lean changes, over the step width.
 ACROSS = 0.9
 #: Largest turn of the face beyond the walk, radians.
@@ -337,6 +341,8 @@ class MetaGait:
             direction = self._paper_heading(along, chord.length, way)
         else:
             direction = way + 0.5 * turn
+        change = wrapped(direction - stance.direction)
+        direction += float(np.clip(change, -LARGEST_CHANGE, LARGEST_CHANGE)) - change
         beyond = wrapped(direction - stance.heading)
         direction += float(np.clip(beyond, -HIP_ROTATION, HIP_ROTATION)) - beyond
         period = wish.duration * chord.slower
@@ -357,6 +363,8 @@ class MetaGait:
         into *= 1.0 if sign * sharp > 0.0 else TOE_IN
         heading = direction + sign * self._stance.toe_out[side] + np.sign(sharp) * into  # type: ignore[index]
         place = middle + half * sign * left
+        want = min(APART, 0.8 * self._stance.width)
+        want += APART_TURNING * min(1.0, abs(sharp) / APART_TURN)
         for _ in range(APART_MOST):
             apart = feet_apart(
                 place[None],
@@ -366,7 +374,7 @@ class MetaGait:
                 back=body.foot.heel,
                 front=body.foot.ball + body.foot.toes,
             )
-            if apart[0] >= min(APART, 0.8 * self._stance.width):
+            if apart[0] >= want:
                 break
             place = place + APART_PART * sign * left
         return Landing(
