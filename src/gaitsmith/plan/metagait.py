@@ -14,7 +14,7 @@ import numpy as np
 from gaitsmith.conventions import LEFT, RIGHT, SIDE_SIGN, leftward
 from gaitsmith.geometry.angles import wrapped
 from gaitsmith.geometry.planar import feet_apart
-from gaitsmith.plan.course import course_change, lean_lever, lean_tangent
+from gaitsmith.plan.course import NO_TURN, course_change, lean_lever, lean_tangent
 from gaitsmith.plan.follow import FREE_RADIUS, LENGTH_SHARE, WIDENED
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.landing import LandingSearch
@@ -47,6 +47,8 @@ TURN_GROWS = float(np.radians(25.0))
 #: Turns that are still to be made (radians) from which steps get shorter, and at which they are
 #: as short as they get: who turns round does so nearly on the spot.
 SPOT = (float(np.radians(80.0)), float(np.radians(160.0)))
+#: The same where a path is to be kept to: corners are gone round by short steps.
+CORNER = (float(np.radians(28.0)), float(np.radians(55.0)))
 #: [SM01] section 6.1: from the first angle on feet point into the turn, by the second at most.
 TOE_OUT_FROM, TOE_OUT_MOST = float(np.radians(45.0)), float(np.radians(25.0))
 #: Part of it for the foot inside of which the other one passes: toes in, it would be hit.
@@ -349,7 +351,7 @@ class MetaGait:
         if last.period > 0.0:
             low, high = last.period / DURATION_CHANGES, last.period * DURATION_CHANGES
             period = float(np.clip(period, low, high))
-        lean = self._lean(chord, turn, period, last)
+        lean = self._lean(here, turn, period, last, wish)
         left = leftward(float(direction))[[0, 2]]
         middle = line - self._lever * lean * left
         if chord.last:
@@ -396,13 +398,22 @@ class MetaGait:
             closes=chord.last,
         )
 
-    def _lean(self, chord: _Chord, turn: float, period: float, last: Landing) -> float:
-        """Tangent of the lean, which follows the turn and does not cross the feet."""
-        length = max(chord.length, 0.1)
-        bend = (0.5 * turn + 0.5 * chord.turn) / length
-        wanted = 0.0 if chord.last else float(lean_tangent(length / period, bend))  # type: ignore[arg-type]
-        room = ACROSS * self._stance.width / max(self._lever, 1e-9)
-        return float(np.clip(wanted, last.lean - room, last.lean + room)) if self._lever else 0.0
+    def _lean(
+        self, here: Landing, turn: float, period: float, last: Landing, wish: Wish
+    ) -> float:
+        """Tangent of the lean, which follows the turn, ends with the walk, crosses no feet."""
+        if not self._lever:
+            return 0.0
+        length = max(here.length, 0.1)
+        bend = (0.5 * turn + 0.5 * here.turn) / length
+        wanted = float(lean_tangent(np.array(length / period), np.array(bend)))
+        if wish.stop:
+            wanted = 0.0
+        elif wish.heading is None and self._path is not None:
+            rest = self._path.length - here.along
+            wanted *= float(np.clip(rest / (2.0 * wish.length), 0.0, 1.0))
+        room = ACROSS * self._stance.width / self._lever
+        return float(np.clip(wanted, last.lean - room, last.lean + room))
 
     def _gaze(self, direction: float, turn: float, wish: Wish) -> float:
         if wish.heading is not None:
@@ -438,33 +449,39 @@ class MetaGait:
         low = last.length - LENGTH_CHANGES * leg if not last.stands else 0.0
         high = last.length + LENGTH_CHANGES * leg if not last.stands else np.inf
         length = float(np.clip(usual, low, high))
-        rest = np.inf
-        if wish.heading is None and self._path is not None:
-            rest = self._path.length - last.along
-            length = self._shorter(last.along, length)
-            way = self._aim(last, length)
-        elif wish.heading is None:
-            way = last.way
-        else:
-            way = wish.heading
+        if wish.heading is not None or self._path is None:
+            way = last.way if wish.heading is None else wish.heading
+            return self._turned(last, way, length, wish)
+        level = self._shorter(last.along, length)
+        chord = self._turned(last, self._aim(last, level), level, wish)
+        # turning shortens the step: it is aimed at where it then ends
+        aimed = self._turned(last, self._aim(last, chord.length), level, wish)
+        return replace(chord, way=aimed.way, turn=aimed.turn)
+
+    def _turned(self, last: Landing, way: float, length: float, wish: Wish) -> _Chord:
+        """The step that turns towards ``way`` as far as one step does, shorter for it."""
+        leg = self._body.leg_length
         missing = wrapped(way - last.way)
         most = min(LARGEST_TURN, TURN_GROWS + max(0.0, last.turn * np.sign(missing)))
         if wish.stop:
             most = min(most, 0.5 * LARGEST_TURN)
         turn = float(np.clip(missing, -most, most))
-        turn = 0.0 if abs(turn) < 1e-12 else turn
+        turn = 0.0 if abs(turn) < NO_TURN else turn
         power = 1.0 if wish.keep_duration else LENGTH_SHARE
-        slow = min(1.0, (length / (max(abs(turn), 1e-9) * FREE_RADIUS)) ** (1.0 / 3.0))
+        slow = min(1.0, (length / (max(abs(turn), NO_TURN) * FREE_RADIUS)) ** (1.0 / 3.0))
         least = min(length, SHORTEST * leg)
-        spot = float(np.clip((SPOT[1] - abs(missing)) / (SPOT[1] - SPOT[0]), 0.0, 1.0))
+        low, high = SPOT if wish.heading is not None else CORNER
+        spot = float(np.clip((high - abs(missing)) / (high - low), 0.0, 1.0))
         length = max(length * slow**power, least)
         length = least + spot * (length - least)
         ends = False
         if wish.stop:
             length, ends = max(LAST_STEP * length, least), True
-        elif rest < 4.0 * length:
-            parts = stride_lengths(max(rest, 1e-3), length, "walk", "stand")
-            length, ends = min(parts[0], length), len(parts) == 1
+        elif wish.heading is None and self._path is not None:
+            rest = self._path.length - last.along
+            if rest < 4.0 * length:
+                parts = stride_lengths(max(rest, 1e-3), length, "walk", "stand")
+                length, ends = min(parts[0], length), len(parts) == 1
         return _Chord(last.way + turn, float(length), float(slow ** (power - 1.0)), turn, ends)
 
     def _arrived(self, last: Landing) -> bool:
