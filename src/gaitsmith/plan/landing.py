@@ -51,6 +51,8 @@ T = TypeVar("T", bound=Placed)
 #: Rounds of the search and the change of length (m) at which it ends; half of each change is
 #: taken: at an edge the whole would go back and forth.
 ROUNDS, ENOUGH, DAMPED = 6, 1e-4, 0.5
+#: Steps on the spot before what is in the way, over the step that was wished.
+NEARLY_NONE = 0.1
 #: Grid of places on stepped ground, over the longest step: lengths are tried in parts of it.
 COARSE = 0.02
 
@@ -152,7 +154,7 @@ class LandingSearch:
         """The best of many lengths: near the level one, the sole borne, no needless rise."""
         leg = self._body.leg_length
         part = max(GRID, COARSE * leg)
-        lengths = np.arange(SHORTEST * leg, LONGEST * leg, part)
+        lengths = np.arange(min(SHORTEST * leg, NEARLY_NONE * level), LONGEST * leg, part)
         lengths = np.append(lengths[np.abs(lengths - level) > 0.25 * part], level)
         # the line is nearly straight over one step: places from two of them
         ends = [landing(float(lengths[i])) for i in (0, -2)]

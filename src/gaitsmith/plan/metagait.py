@@ -49,8 +49,9 @@ TURN_GROWS = float(np.radians(25.0))
 SPOT = (float(np.radians(80.0)), float(np.radians(160.0)))
 #: The same where a path is to be kept to: corners are gone round by short steps.
 CORNER = (float(np.radians(28.0)), float(np.radians(55.0)))
-#: [SM01] section 6.1: from the first angle on feet point into the turn, by the second at most.
-TOE_OUT_FROM, TOE_OUT_MOST = float(np.radians(45.0)), float(np.radians(25.0))
+#: [SM01] section 6.1: from the first angle on feet point into the turn, by the second at most. The
+#: paper's 45 deg are never reached here, steps turn by 40 at most.
+TOE_OUT_FROM, TOE_OUT_MOST = float(np.radians(25.0)), float(np.radians(25.0))
 #: Part of it for the foot inside of which the other one passes: toes in, it would be hit.
 TOE_IN = 0.5
 #: The pelvis turns so far beyond the foot that bears, radians (people's hips: 45 deg).

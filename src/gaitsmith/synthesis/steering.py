@@ -14,6 +14,7 @@ import numpy as np
 
 from gaitsmith.contact import StepCurves, plan_contact
 from gaitsmith.contact.step_curves import CURVES
+from gaitsmith.errors import InfeasibleError
 from gaitsmith.synthesis.join import join_all
 from gaitsmith.synthesis.replanned import Blend, LivePlan, Run
 from gaitsmith.synthesis.step import prepared_steps, stand_still
@@ -40,6 +41,8 @@ MOVES, TURNS = 0.7, 1.2
 UNDER_WAY = 0.9
 #: Footsteps before the present ones that the curves of a window are drawn from.
 HISTORY = 6
+#: A step that this body cannot take is tried so much shorter.
+SHORTENED = (0.75, 0.5)
 #: Seconds that are none.
 INSTANT = 1e-9
 
@@ -76,6 +79,7 @@ class Steering:
         """Stand."""
         self._changed = False
         self._look = np.inf
+        self._refused: Wish | None = None
         planned = self.gait.ahead(self.feet, replace(self.wish, stop=False, heading=None), 2)
         self._still = self._standing(planned)
         self._plan = LivePlan(plan_contact([self._still], self.body, self.ground), 0)
@@ -113,8 +117,11 @@ class Steering:
     # -------------------------------------------------------------------------- steps
 
     def _begin(self, time: float) -> None:
-        """Start to walk, if that is wished."""
+        """Start to walk, if that is wished and there is a way."""
+        if self.wish is self._refused:
+            return
         if not self.gait.ahead(self.feet, self.wish, 1):
+            self._refused = self.wish
             return
         self._take(time, rate=0.0)
 
@@ -136,8 +143,16 @@ class Steering:
     def _take(self, time: float, rate: float) -> None:
         """Plan the step that begins at ``time``, with the phase passing at ``rate``."""
         self._changed = False
-        (self.target,) = self.gait.ahead(self.feet, self.wish, 1)
-        following = self._window(0.0)
+        for share in (1.0, *SHORTENED):
+            wish = replace(self.wish, length=share * self.wish.length)
+            (self.target,) = self.gait.ahead(self.feet, wish, 1)
+            try:
+                following = self._window(0.0)
+            except InfeasibleError:
+                if share == SHORTENED[-1]:
+                    raise
+            else:
+                break
         self._pass(time, 0.0, rate, following)
 
     def _replan(self, time: float) -> None:
@@ -146,7 +161,6 @@ class Steering:
         assert self.target is not None
         phase = float(self.run.phase(np.array([time]))[0])
         rate = self.run.rate(time)
-        self._changed = False
         (new,) = self.gait.ahead(self.feet, self.wish, 1, moving=self.target)
         old, left = self.target, self.run.end - time
         away = float(np.linalg.norm((new.position - old.position)[[0, 2]]))
@@ -155,9 +169,13 @@ class Steering:
         if old.kind == "stop" == new.kind:
             share = 0.0
         self.target = self.gait.limited(old, new, self._stance(new.side), share)
-        if share < 1.0:
-            self._changed = True  # more of it at the next look
-        following = self._window(phase)
+        try:
+            following = self._window(phase)
+        except InfeasibleError:  # not in this step; the next one tries
+            self.target = old
+            self._look = np.inf
+            return
+        self._changed = share < 1.0  # more of it at the next look
         self._pass(time, phase, rate, following)
 
     def _stance(self, side: int) -> Landing:
