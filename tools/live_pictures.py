@@ -1,7 +1,7 @@
 """Make the pictures of live control: docs/pictures/live-*.
 
 Somebody is steered through gates by a pilot who sees only the next gate, ten times a second; the
-way from above, and the walk as a contact sheet and as an animation.
+way from above, and the walk as a contact sheet.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ import numpy as np
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt
-from curve_pictures import top_view
 
 import gaitsmith
+from curve_pictures import top_view
 from gaitsmith import Controls, LiveWalker
-from gaitsmith.viz import contact_sheet, gif
+from gaitsmith.viz import contact_sheet
 
 TARGET = Path(__file__).parent.parent / "docs/pictures"
 #: Middles of the gates, x,z, meters, and half their width; speeds wished on the way to each.
@@ -47,7 +47,6 @@ def main() -> None:
     """Write the pictures."""
     motion, told = steered()
     contact_sheet(motion, TARGET / "live-sheet.png")
-    gif(motion, TARGET / "live.gif", width=360, fps=12.0)
     figure, ax = plt.subplots(figsize=(7.0, 7.0), dpi=110)
     top_view(ax, motion, "Steered through gates: footprints, hips, swinging ankles")
     ax.plot(*np.array(told).T, ".", color="0.3", ms=3, label="told")

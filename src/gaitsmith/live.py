@@ -157,7 +157,8 @@ class LiveWalker:
         self._fps = positive("fps", fps, "frames per second")
         if not SLOWEST_FPS <= self._fps <= FASTEST_FPS:
             raise InvalidInputError(
-                f"fps must be from {SLOWEST_FPS:g} to {FASTEST_FPS:g} frames per second, got {fps:g}"
+                f"fps must be from {SLOWEST_FPS:g} to {FASTEST_FPS:g} frames per second, got "
+                f"{fps:g}"
             )
         one_of("banking", banking, BANKINGS)
         manner = manner or Manner()
@@ -337,7 +338,7 @@ class LiveWalker:
         )
 
     def _show(self, until: float, *, inclusive: bool) -> None:
-        """Make the frames up to ``until``; a frame in which a foot lands belongs to what follows."""
+        """Make the frames up to ``until``; one in which a foot lands belongs to what follows."""
         first = len(self._frames)
         margin = INSTANT if inclusive else -INSTANT
         last = int(np.floor((until + margin) * self._fps))

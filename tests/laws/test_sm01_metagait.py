@@ -1,6 +1,8 @@
-"""MetaGait, [SM01] section 6: what the controller sees, what it gives, and where the paper drifts."""
+"""MetaGait, [SM01] section 6: what the controller sees and gives, and where the paper drifts."""
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -128,7 +130,7 @@ def test_limits_of_every_step(seed):
         heading = float(rng.uniform(-np.pi, np.pi))
         length = float(rng.uniform(0.3, 1.0) * BODY.leg_length)
         feet += gait.ahead(feet, wish(heading=heading, length=length), 1)
-    for last, foot in zip(feet[2:], feet[3:], strict=False):
+    for last, foot in pairwise(feet[2:]):
         assert abs(foot.way - last.way) <= LARGEST_TURN + 1e-9
         assert abs(wrapped(foot.direction - last.direction)) <= LARGEST_CHANGE + 1e-9
         assert abs(wrapped(foot.direction - last.heading)) <= HIP_ROTATION + 1e-9
@@ -164,7 +166,9 @@ def test_sharp_turns_point_the_foot_into_the_curve():
             feet += gait.ahead(feet, wish(heading=turn * 2.8), 1)
             foot = feet[-1]
             outward = turn * (1 - 2 * foot.side)
-            into[int(outward < 0.0)].append(turn * (foot.heading - foot.direction) - outward * usual)
+            into[int(outward < 0.0)].append(
+                turn * (foot.heading - foot.direction) - outward * usual
+            )
         assert max(into[0]) > 0.1
         assert max(into[1]) > 0.05
         assert min(into[0] + into[1]) > -1e-9

@@ -42,9 +42,15 @@ if TYPE_CHECKING:
 class Placed(Protocol):
     """A foot whose height is not known yet: :class:`~gaitsmith.plan.metagait.Landing`."""
 
-    position: Float[np.ndarray, "3"]
-    heading: float
-    length: float
+    @property
+    def position(self) -> Float[np.ndarray, "3"]:
+        """N, meters; its height counts for nothing."""
+        ...
+
+    @property
+    def heading(self) -> float:
+        """Of the foot, radians."""
+        ...
 
 
 T = TypeVar("T", bound=Placed)

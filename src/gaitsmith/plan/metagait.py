@@ -62,9 +62,9 @@ INSIDE = 0.1
 LAST_STEP = 0.7
 #: Change of step length over the leg, and of duration, from one step to the next.
 LENGTH_CHANGES, DURATION_CHANGES = 0.3, 1.25
-#: Axes of feet are set so far apart (m), in turns of the second angle (radians) farther by the first
-#: length, in so many parts of the first.
+#: Axes of feet are set so far apart (m), by moving one outward in so many such parts.
 APART, APART_PART, APART_MOST = 0.07, 0.01, 12
+#: So much farther (m) in a turn of this angle (radians).
 APART_TURNING, APART_TURN = 0.025, float(np.radians(25.0))
 #: Largest change of the walk's direction from one footstep to the next, radians.
 LARGEST_CHANGE = float(np.radians(40.0))
@@ -399,9 +399,7 @@ class MetaGait:
             closes=chord.last,
         )
 
-    def _lean(
-        self, here: Landing, turn: float, period: float, last: Landing, wish: Wish
-    ) -> float:
+    def _lean(self, here: Landing, turn: float, period: float, last: Landing, wish: Wish) -> float:
         """Tangent of the lean, which follows the turn, ends with the walk, crosses no feet."""
         if not self._lever:
             return 0.0

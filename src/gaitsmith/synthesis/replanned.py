@@ -98,7 +98,7 @@ class LivePlan:
         return replace(self.contact, targets=replace(targets, tilt=tilts, toes=bent))
 
     def become(self, new: ContactPlan, first: int, step: int, blend: Blend) -> LivePlan:
-        """This plan, that becomes ``new`` in the course of ``step``.
+        """The plan that is this one so far and becomes ``new`` in the course of ``step``.
 
         ``new`` begins with step ``first`` of the walk. Both say the same of everything that has
         been shown of ``step``: where its feet are and when the swinging one leaves.
@@ -198,8 +198,8 @@ class Run:
         """Phase per second at ``time``."""
         u = float(np.clip((time - self.begin) / self.duration, 0.0, 1.0))
         a, b = self.rates
-        mean = (self.high - self.low) / self.duration
-        return 6.0 * u * (1.0 - u) * mean + a * (1.0 - u) * (1.0 - 3.0 * u) + b * u * (3.0 * u - 2.0)
+        v, mean = 1.0 - u, (self.high - self.low) / self.duration
+        return 6.0 * u * v * mean + a * v * (1.0 - 3.0 * u) + b * u * (3.0 * u - 2.0)
 
     def time_of(self, phase: float) -> float:
         """When ``phase`` is passed."""
@@ -211,4 +211,3 @@ class Run:
             else:
                 high = middle
         return high
-

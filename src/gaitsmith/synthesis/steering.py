@@ -36,7 +36,7 @@ HORIZON = 0.68
 #: Phases after the toe-off at which wishes that have changed are looked at, and how far apart.
 FIRST_LOOK, LOOKS = 0.02, 0.1
 #: How far the goal of a swinging foot may move for each second until it lands: meters, radians.
-MOVES, TURNS = 0.7, 1.2
+MOVES, TURNS = 0.55, 1.0
 #: A start is under way by this part of the time to its toe-off.
 UNDER_WAY = 0.9
 #: Footsteps before the present ones that the curves of a window are drawn from.
@@ -143,17 +143,20 @@ class Steering:
     def _take(self, time: float, rate: float) -> None:
         """Plan the step that begins at ``time``, with the phase passing at ``rate``."""
         self._changed = False
+        following = self._shortened()
+        self._pass(time, 0.0, rate, following)
+
+    def _shortened(self) -> Landing | None:
+        """Plan the step as is wished or, where this body cannot take it, shorter."""
         for share in (1.0, *SHORTENED):
             wish = replace(self.wish, length=share * self.wish.length)
             (self.target,) = self.gait.ahead(self.feet, wish, 1)
             try:
-                following = self._window(0.0)
+                return self._window(0.0)
             except InfeasibleError:
                 if share == SHORTENED[-1]:
                     raise
-            else:
-                break
-        self._pass(time, 0.0, rate, following)
+        raise AssertionError
 
     def _replan(self, time: float) -> None:
         """Plan the rest of the present step anew."""
@@ -189,10 +192,7 @@ class Steering:
             last, seconds = 0.0, 1.5 * left / max(rate, 0.5 / own)
         else:
             last = 1.0 / own if following is None else min(1.0 / own, 1.0 / following.period)
-            if rate <= 0.0:
-                seconds = self.target.duration
-            else:
-                seconds = 2.0 * left / (rate + last)
+            seconds = self.target.duration if rate <= 0.0 else 2.0 * left / (rate + last)
         self.run = Run.of(time, seconds, phase, (rate, last))
         self._plan_looks(time)
 
@@ -244,7 +244,9 @@ class Steering:
         references: list[ReferenceStep] = [p.reference for p in prepared]
         kinds: list[StepKind] = [s.kind for s in planned]
         if self.target.kind == "start":
-            references, kinds, own = [self._still, *references], ["stand", *kinds], own - 1
+            references.insert(0, self._still)
+            kinds.insert(0, "stand")
+            own -= 1
         joined = join_all(references, kinds)
         if kinds[-1] == "stop":
             self._still = stand_still(joined[-1])
@@ -266,4 +268,3 @@ class Steering:
             target_heading=float(first.foothold_heading[swing]),
             speed_change=None,
         )
-
