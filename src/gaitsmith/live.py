@@ -17,8 +17,9 @@ from gaitsmith.errors import InvalidInputError
 from gaitsmith.learning import body_of, gait_from
 from gaitsmith.motion.motion import Labels, Motion
 from gaitsmith.pipeline import FASTEST_FPS, SLOWEST_FPS, ground_of
+from gaitsmith.plan.aiming import Wish
 from gaitsmith.plan.lengths import PATH_SPACING
-from gaitsmith.plan.metagait import MetaGait, Wish
+from gaitsmith.plan.metagait import MetaGait
 from gaitsmith.plan.pace import choose_pace
 from gaitsmith.plan.start import Start, start_of, start_to_dict
 from gaitsmith.plan.timeline import landing_at

@@ -11,16 +11,10 @@ from gaitsmith import LiveWalker
 from gaitsmith.body.presets import body_from
 from gaitsmith.geometry.angles import wrapped
 from gaitsmith.ground import Flat, Slope, Stairs
+from gaitsmith.plan.aiming import LARGEST_TURN, SHORTEST, Wish
 from gaitsmith.plan.footing import footing
 from gaitsmith.plan.lengths import Stance
-from gaitsmith.plan.metagait import (
-    HIP_ROTATION,
-    LARGEST_CHANGE,
-    LARGEST_TURN,
-    SHORTEST,
-    MetaGait,
-    Wish,
-)
+from gaitsmith.plan.metagait import HIP_ROTATION, LARGEST_CHANGE, MetaGait
 from gaitsmith.plan.pace import choose_pace
 from gaitsmith.plan.paths import Path
 from gaitsmith.plan.slope_steps import preferred_length

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -36,24 +36,10 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
     from gaitsmith.body.body import Body
+    from gaitsmith.conventions import StepKind
     from gaitsmith.ground import Ground
 
 
-class Placed(Protocol):
-    """A foot whose height is not known yet: :class:`~gaitsmith.plan.metagait.Landing`."""
-
-    @property
-    def position(self) -> Float[np.ndarray, "3"]:
-        """N, meters; its height counts for nothing."""
-        ...
-
-    @property
-    def heading(self) -> float:
-        """Of the foot, radians."""
-        ...
-
-
-T = TypeVar("T", bound=Placed)
 #: Rounds of the search and the change of length (m) at which it ends; half of each change is
 #: taken: at an edge the whole would go back and forth.
 ROUNDS, ENOUGH, DAMPED = 6, 1e-4, 0.5
@@ -61,6 +47,52 @@ ROUNDS, ENOUGH, DAMPED = 6, 1e-4, 0.5
 NEARLY_NONE = 0.1
 #: Grid of places on stepped ground, over the longest step: lengths are tried in parts of it.
 COARSE = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Landing:
+    """A foot where it stands or will stand, and the step that sets it there.
+
+    Attributes
+    ----------
+    kind
+        Of that step; ``"stand"`` for feet that nobody set.
+    side, position, heading
+        0 left, 1 right; ``(3,)`` N; of the foot, radians.
+    line, direction, way
+        ``(2,)`` x,z of the walk's line beside it; direction of that line here; direction of the
+        chord that led here, radians.
+    middle, lean, gaze
+        As in :class:`~gaitsmith.plan.footsteps.Footstep`; the gaze is beyond ``direction``.
+    length, duration, period
+        Of the step, meters and seconds; seconds it would take in mid-walk.
+    along
+        Arc length of the path beside it, meters.
+    closes
+        The other foot is to be set beside it.
+    """
+
+    kind: StepKind
+    side: int
+    position: Float[np.ndarray, "3"]
+    heading: float
+    line: Float[np.ndarray, "2"]
+    direction: float
+    way: float
+    middle: Float[np.ndarray, "2"]
+    lean: float = 0.0
+    gaze: float = 0.0
+    length: float = 0.0
+    duration: float = 0.0
+    period: float = 0.0
+    along: float = 0.0
+    turn: float = 0.0
+    closes: bool = False
+
+    @property
+    def stands(self) -> bool:
+        """Whether both feet stand once it has landed."""
+        return self.kind in ("stand", "stop")
 
 
 class LandingSearch:
@@ -89,12 +121,12 @@ class LandingSearch:
 
     def find(
         self,
-        landing: Callable[[float], T],
+        landing: Callable[[float], Landing],
         length: float,
         before: float,
         *,
         keep_length: bool = False,
-    ) -> tuple[T, float] | None:
+    ) -> tuple[Landing, float] | None:
         """The footstep of the step that the ground allows, and how much longer it takes.
 
         Parameters
@@ -128,14 +160,14 @@ class LandingSearch:
         x, z = place.tolist()
         return len(edges_near(self._ground, x, z, self._body.leg_length)) > 0
 
-    def _on_ground(self, foot: T) -> T:
+    def _on_ground(self, foot: Landing) -> Landing:
         position = self.placed(foot.position[[0, 2]], foot.heading)
-        return replace(foot, position=position)  # type: ignore[type-var]
+        return replace(foot, position=position)
 
     def _on_slope(
-        self, landing: Callable[[float], T], level: float, before: float, *, keep_length: bool
-    ) -> tuple[T, float] | None:
-        """[SM01]'s iteration: height where the foot would land, length for that height."""
+        self, landing: Callable[[float], Landing], level: float, before: float, *, keep_length: bool
+    ) -> tuple[Landing, float] | None:
+        """[SM01] section 6.2: height where the foot would land, length for that height, again."""
         length = level
         foot, share, slope = None, 1.0, 0.0
         for _ in range(ROUNDS):
@@ -155,8 +187,8 @@ class LandingSearch:
         return foot, slower
 
     def _among(
-        self, landing: Callable[[float], T], level: float, before: float
-    ) -> tuple[T, float] | None:
+        self, landing: Callable[[float], Landing], level: float, before: float
+    ) -> tuple[Landing, float] | None:
         """The best of many lengths: near the level one, the sole borne, no needless rise."""
         leg = self._body.leg_length
         part = max(GRID, COARSE * leg)

@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     from gaitsmith.contact import ContactPlan, Poses, ReferenceStep
     from gaitsmith.conventions import StepKind
     from gaitsmith.ground import Ground
-    from gaitsmith.plan.metagait import Landing, MetaGait, Wish
+    from gaitsmith.plan.aiming import Wish
+    from gaitsmith.plan.landing import Landing
+    from gaitsmith.plan.metagait import MetaGait
     from gaitsmith.synthesis.step import StepGenerator
 
 #: The foot's goal may change up to this phase of the step ([SM01]: .34 of the stride).
