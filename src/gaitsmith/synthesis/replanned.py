@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.geometry.curves import hermite, hermite_slopes
+from gaitsmith.contact.step_curves import ROWS
+from gaitsmith.geometry.curves import hermite, hermite_slopes, parabola_slopes, smoothstep
+from gaitsmith.geometry.rotations import exp, left_of, turned_left
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -23,6 +25,11 @@ if TYPE_CHECKING:
 
 #: Nodes of two plans nearer than this (of a step) are one.
 SAME = 1e-7
+#: A leg whose foot's goal has moved by so much (m) straightens as softly as it gets: over this part
+#: of its length, to so much of it, but for the last part of the step, where the foot lands.
+MUCH, SOFTER, SOFT_REACH, LANDS = 0.12, 0.008, 0.998, 0.15
+#: So does one that gets straight, over its length, before this phase.
+STRAIGHT, EARLY = (0.985, 0.998), 0.86
 #: Rates beyond this over the mean one make a cubic run backwards.
 STEEPEST_RATE = 2.9
 
@@ -97,11 +104,14 @@ class LivePlan:
             bent[row] = toes
         return replace(self.contact, targets=replace(targets, tilt=tilts, toes=bent))
 
-    def become(self, new: ContactPlan, first: int, step: int, blend: Blend) -> LivePlan:
+    def become(
+        self, new: ContactPlan, first: int, step: int, blend: Blend, changed: float = 0.0
+    ) -> LivePlan:
         """The plan that is this one so far and becomes ``new`` in the course of ``step``.
 
         ``new`` begins with step ``first`` of the walk. Both say the same of everything that has
-        been shown of ``step``: where its feet are and when the swinging one leaves.
+        been shown of ``step``: where its feet are and when the swinging one leaves. ``changed`` is
+        how far the goal of that foot has moved, meters.
         """
         old, shift = self.contact, self.first - first
         row = step - first
@@ -118,14 +128,18 @@ class LivePlan:
         a, da = _read(old, at - shift)
         b, db = _read(new, at)
         change = b - a
+        table = np.where(weight >= 1.0, b, a + weight * change)
+        slopes = np.where(weight >= 1.0, db, da + weight * (db - da) + rate * change)
         plan = replace(
             new,
             at=at,
-            table=np.where(weight >= 1.0, b, a + weight * change),
-            slopes=np.where(weight >= 1.0, db, da + weight * (db - da) + rate * change),
+            table=table,
+            slopes=slopes,
             toe_off=toe_off,
             level=new.level and old.level,
         )
+        if toe_off[row] < 1.0:
+            _softened(plan, row, weight[:, 0], min(1.0, changed / MUCH))
         return LivePlan(plan, first, self._lies(new, row, step, blend))
 
     def _lies(self, new: ContactPlan, row: int, step: int, blend: Blend) -> tuple[Lie, ...]:
@@ -142,6 +156,40 @@ class LivePlan:
         bent = 0.0 if toes is None else float(toes[row])
         tilt = np.array(self.contact.targets.tilt[row])
         return replace(self, lies=(Lie(Blend(step, step + 1.0), tilt, bent),))
+
+
+def _softened(plan: ContactPlan, row: int, weight: Float[np.ndarray, "n"], share: float) -> None:
+    """Draw the swinging foot of step ``row`` near the hip where its leg gets straight.
+
+    A leg that gets straight long before it lands, as when it reaches aside in a sharp turn, does
+    so in no time at all otherwise. ``weight`` is 0 for what was shown.
+    """
+    body, at, off = plan.body, plan.at, row + float(plan.toe_off[row])
+    node = np.flatnonzero((at > off) & (at < row + 1.0) & (weight > 0.0))
+    if not len(node):
+        return
+    side = int(1 - plan.stance[row])
+    rows = plan.table[node].T
+    pelvis = turned_left(rows[ROWS["heading"]][0], exp(rows[ROWS["pelvis"]].T))
+    half = (0.5, -0.5)[side] * body.hip_width
+    hip = rows[ROWS["center"]].T + half * left_of(pelvis)
+    columns = ROWS["ankle"].start + 3 * side + np.arange(3)
+    line = plan.table[node[:, None], columns] - hip
+    distance = np.sqrt((line * line).sum(-1))
+    early = at[node] < row + EARLY
+    reached = float(distance[early].max(initial=0.0)) / body.leg_length
+    share = max(share, float(smoothstep((reached - STRAIGHT[0]) / (STRAIGHT[1] - STRAIGHT[0]))))
+    if share < 0.01:
+        return
+    soft = share * SOFTER * body.leg_length
+    over = (distance - SOFT_REACH * body.leg_length) / soft
+    less = soft * np.log1p(np.exp(np.minimum(over, 30.0))) * np.minimum(weight[node], 1.0)
+    less *= smoothstep((row + 1.0 - at[node]) / LANDS)
+    moved = np.zeros((len(at), 3))
+    moved[node] = -line * (less / distance)[:, None]
+    around = np.arange(max(node[0] - 1, 0), min(node[-1] + 2, len(at)))
+    plan.table[around[:, None], columns] += moved[around]
+    plan.slopes[around[:, None], columns] += parabola_slopes(at[around], moved[around])
 
 
 def _merged(fixed: Float[np.ndarray, "n"], more: Float[np.ndarray, "m"]) -> Float[np.ndarray, "k"]:

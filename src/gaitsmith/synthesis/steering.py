@@ -81,6 +81,7 @@ class Steering:
         """Stand."""
         self._changed = False
         self._look = np.inf
+        self._changed_by = 0.0
         self._refused: Wish | None = None
         planned = self.gait.ahead(self.feet, replace(self.wish, stop=False, heading=None), 2)
         self._still = self._standing(planned)
@@ -175,7 +176,7 @@ class Steering:
             share = 0.0
         self.target = self.gait.limited(old, new, self._stance(new.side), share)
         try:
-            following = self._window(phase)
+            following = self._window(phase, old)
         except InfeasibleError:  # not in this step; the next one tries
             self.target = old
             self._look = np.inf
@@ -211,8 +212,11 @@ class Steering:
 
     # ------------------------------------------------------------------------ windows
 
-    def _window(self, phase: float) -> Landing | None:
-        """Plan the step before, the present one and the next; the footstep of the next one."""
+    def _window(self, phase: float, old: Landing | None = None) -> Landing | None:
+        """Plan the step before, the present one and the next; the footstep of the next one.
+
+        ``old`` is where the foot was to land so far, None: as was foreseen in the step before.
+        """
         assert self.target is not None
         self.replans += 1
         ahead = self.gait.ahead([*self.feet, self.target], self.wish, 2)
@@ -226,7 +230,11 @@ class Steering:
         if self.target.kind == "start" and phase == 0.0:
             off = float(new.toe_off[self.step - first])
             blend = Blend(self.step, self.step + UNDER_WAY * off)
-        self._plan = self._plan.become(new, first, self.step, blend)
+        row = self.step - self._plan.first
+        foreseen = self._plan.contact.targets.position[row] if old is None else old.position
+        changed = float(np.linalg.norm((self.target.position - foreseen)[[0, 2]]))
+        self._changed_by = max(changed, 0.0 if phase == 0.0 else self._changed_by)
+        self._plan = self._plan.become(new, first, self.step, blend, self._changed_by)
         return ahead[0] if ahead else None
 
     def _contact(self, ahead: Sequence[Landing]) -> tuple[ContactPlan, int]:
