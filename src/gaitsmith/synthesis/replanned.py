@@ -10,7 +10,7 @@ both plans reach their mean does.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -237,9 +237,15 @@ class Run:
 
     def phase(self, time: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
         """At ``time``, seconds."""
-        u = np.clip((time - self.begin) / self.duration, 0.0, 1.0)
+        return self._eased(np.clip((time - self.begin) / self.duration, 0.0, 1.0))
+
+    def phase_at(self, time: float) -> float:
+        """At one ``time``, seconds: much quicker than an array of one."""
+        return self._eased(min(max((time - self.begin) / self.duration, 0.0), 1.0))
+
+    def _eased(self, u: Any) -> Any:
         v, way = 1.0 - u, self.high - self.low
-        a, b = (r * self.duration for r in self.rates)
+        a, b = self.rates[0] * self.duration, self.rates[1] * self.duration
         return self.low + u * u * (3.0 - 2.0 * u) * way + u * v * (v * a - u * b)
 
     def rate(self, time: float) -> float:
@@ -254,7 +260,7 @@ class Run:
         low, high = self.begin, self.end
         for _ in range(60):
             middle = 0.5 * (low + high)
-            if float(self.phase(np.array([middle]))[0]) < phase:
+            if self.phase_at(middle) < phase:
                 low = middle
             else:
                 high = middle

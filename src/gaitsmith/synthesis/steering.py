@@ -93,7 +93,8 @@ class Steering:
         """From ``time`` on, ``wish`` holds."""
         if wish != self.wish:
             self.wish, self._changed = wish, True
-            self._plan_looks(time)
+            if self._look == np.inf:
+                self._plan_looks(time)
         if self.target is None:
             self._begin(time)
 
@@ -165,7 +166,7 @@ class Steering:
         """Plan the rest of the present step anew."""
         assert self.run is not None
         assert self.target is not None
-        phase = float(self.run.phase(np.array([time]))[0])
+        phase = self.run.phase_at(time)
         rate = self.run.rate(time)
         (new,) = self.gait.ahead(self.feet, self.wish, 1, moving=self.target)
         old, left = self.target, self.run.end - time
@@ -206,7 +207,7 @@ class Steering:
             return
         first = self._plan.toe_off(self.step) + FIRST_LOOK
         looks = np.append(np.arange(first, HORIZON - 0.25 * LOOKS, LOOKS), HORIZON)
-        later = looks[looks > float(self.run.phase(np.array([time]))[0]) + 1e-6]
+        later = looks[looks > self.run.phase_at(time) + 1e-6]
         if len(later):
             self._look = self.run.time_of(float(later[0]))
 
