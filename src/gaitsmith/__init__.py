@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from gaitsmith.ground import GROUNDS, Ground, read_ground
     from gaitsmith.io import load, load_performance
     from gaitsmith.learning import learn
+    from gaitsmith.live import Controls, LivePose, LiveWalker
     from gaitsmith.measuring import measure
     from gaitsmith.motion.motion import Labels, Markers, Motion
     from gaitsmith.motion.performance import Performance
@@ -47,6 +48,7 @@ _HOMES = {
     "Body": "body.body",
     "body_from": "body.presets",
     "compose": "composing",
+    "Controls": "live",
     "Cycle": "gait.cycle",
     "FileFormatError": "errors",
     "Foot": "body.body",
@@ -59,6 +61,8 @@ _HOMES = {
     "Labels": "motion.motion",
     "learn": "learning",
     "LearnedGait": "walks.learned",
+    "LivePose": "live",
+    "LiveWalker": "live",
     "load": "io",
     "load_performance": "io",
     "Manner": "synthesis.upper_body",
@@ -87,6 +91,7 @@ __all__ = [
     "Body",
     "body_from",
     "compose",
+    "Controls",
     "Cycle",
     "FileFormatError",
     "Foot",
@@ -99,6 +104,8 @@ __all__ = [
     "Labels",
     "learn",
     "LearnedGait",
+    "LivePose",
+    "LiveWalker",
     "load",
     "load_performance",
     "Manner",

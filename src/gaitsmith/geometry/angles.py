@@ -1,4 +1,4 @@
-"""Sines and cosines of many angles at once."""
+"""Angles: sines and cosines of many at once, differences the short way round."""
 
 from __future__ import annotations
 
@@ -26,3 +26,12 @@ def sine_cosine(
     np.subtract(1.0, cosine, out=cosine)
     cosine /= whole
     return sine, cosine
+
+
+def wrapped(angle: float) -> float:
+    """``angle`` (radians) plus whole turns, in [-pi, pi); arrays too.
+
+    >>> round(wrapped(7.0), 6)
+    0.716815
+    """
+    return (angle + np.pi) % (2.0 * np.pi) - np.pi

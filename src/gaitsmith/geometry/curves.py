@@ -121,6 +121,22 @@ def hermite(
     return out
 
 
+def hermite_slopes(
+    x: Float[np.ndarray, "n"],
+    y: Float[np.ndarray, "n c"],
+    slopes: Float[np.ndarray, "n c"],
+    at: Float[np.ndarray, "f"],
+) -> Float[np.ndarray, "f c"]:
+    """Slopes at ``at`` of the curve that :func:`hermite` reads."""
+    interval = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
+    h = (x[interval + 1] - x[interval])[:, None]
+    u = np.clip((at - x[interval])[:, None] / h, 0.0, 1.0)
+    rise = (y[interval + 1] - y[interval]) / h
+    begin, end = slopes[interval], slopes[interval + 1]
+    v = 1.0 - u
+    return 6.0 * u * v * rise + begin * v * (1.0 - 3.0 * u) + end * u * (3.0 * u - 2.0)
+
+
 def pchip(
     x: Float[np.ndarray, "n"], y: Float[np.ndarray, "n *c"], at: Float[np.ndarray, "f"]
 ) -> Float[np.ndarray, "f *c"]:

@@ -54,3 +54,15 @@ def generator_for(
         for name, gait in gaits.items()
     }
     return MixedGenerator(walking, LocalGenerator(style.walk, ground, style.overlay), others)
+
+
+def walking_generator(style: Gait, ground: Ground, banking: str) -> StepGenerator:
+    """What walks steps of which nothing is known beforehand."""
+    from gaitsmith.synthesis.curved import CurvedGenerator
+
+    if isinstance(ground, Flat):
+        return CurvedGenerator(style.walk, ground, style.overlay, banking=banking)
+    from gaitsmith.synthesis.uneven import UnevenGenerator
+
+    level = CurvedGenerator(style.walk, Flat(), style.overlay, banking=banking)
+    return UnevenGenerator(level, ground)

@@ -184,12 +184,12 @@ def prepare_walk(
 
     ``rest`` seconds of standing follow a walk that ends in standing.
     """
-    prepared = _prepared(plan.steps(), generator, body)
+    prepared = prepared_steps(plan.steps(), generator, body)
     stands = plan.kinds[-1] not in ("start", "walk")
     clock = Clock.of(plan, rest=rest if stands else 0.0)
     references = join_all([p.reference for p in prepared], plan.kinds)
     if stands:
-        references.append(_stand_still(references[-1]))
+        references.append(stand_still(references[-1]))
     attention = None
     if not isinstance(plan, StepPlan):
         from gaitsmith.synthesis.attention import Attention, balanced  # late: of scripts only
@@ -204,7 +204,9 @@ def prepare_walk(
     return PreparedWalk(plan, contact, clock, attention, tuple(references))
 
 
-def _prepared(steps: list[PlannedStep], generator: StepGenerator, body: Body) -> list[PreparedStep]:
+def prepared_steps(
+    steps: list[PlannedStep], generator: StepGenerator, body: Body
+) -> list[PreparedStep]:
     """All steps, at once where the generator can."""
     if isinstance(generator, BatchGenerator):
         return generator.prepare_all(body, WalkerState(), steps)
@@ -216,7 +218,7 @@ def _prepared(steps: list[PlannedStep], generator: StepGenerator, body: Body) ->
     return out
 
 
-def _stand_still(last: ReferenceStep) -> ReferenceStep:
+def stand_still(last: ReferenceStep) -> ReferenceStep:
     """A step in which nothing moves, from the end of ``last``."""
     swing = 1 - last.stance
     foothold, heading = np.array(last.foothold), np.array(last.foothold_heading)
