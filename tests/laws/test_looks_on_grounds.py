@@ -60,8 +60,8 @@ def front_knee(motion):
 def test_the_knee_in_front_does_not_fold_uphill(gait):
     """10-20 deg more than on the level at 10 deg (human-facts U6), not a lunge."""
     level, ten, fifteen = (front_knee(walked(Slope(d), gait)) for d in (0.0, 10.0, 15.0))
-    assert level + 5.0 < ten < min(level + 23.0, 33.0)
-    assert ten < fifteen < 38.0
+    assert level + 5.0 < ten < min(level + 23.0, max(level + 12.0, 33.0))
+    assert ten < fifteen < max(level + 17.0, 38.0)
 
 
 @pytest.mark.parametrize("body", [1.2, 2.1])
@@ -171,6 +171,14 @@ def test_who_turns_on_a_tread_comes_to_stand_there_without_a_jolt(ground, do):
     change = np.abs(np.diff(motion.root_position[end - 4 :, 1], 2)) * FPS**2
     assert change.max() < 4.0
     assert legs(motion)[0][-1].max() < 12.0
+
+
+def test_who_turns_backward_down_a_riser_keeps_every_promise():
+    """Toes turned by 23 degrees per 1/60 s, and the hips dropped in an instant before."""
+    motion = gaitsmith.walk(
+        do="be at -0.12,1.02 facing -94", ground=Stairs(-0.156, 0.425, 8), fps=FPS
+    )
+    assert broken(motion, but=("footsteps_unseen",)) == {}
 
 
 # ------------------------------------------------------------------------------- length

@@ -12,7 +12,7 @@ from gaitsmith.contact.flights import Flights
 from gaitsmith.contact.foothold import Footholds, sole_in_air
 from gaitsmith.contact.reach import (
     ENDING,
-    ENDING_SPREAD,
+    ENDING_SPREADS,
     REAR_REACH,
     REAR_SLACK,
     SPREAD,
@@ -53,6 +53,9 @@ RAISE_FADES = 0.6
 LEAVING = 0.2
 #: Curves of one sole.
 SOLE = ("pitch", "meta", "bend")
+#: Change of speed (meters per usual step squared) that hips which stop at the end of a walk keep
+#: below, if that can be.
+JOLT = 12.0
 #: Part of the swing over which toes that hung over an edge straighten.
 STRAIGHTENED = 0.5
 
@@ -108,9 +111,11 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
         down_by = lowered(UNEVEN_SPREAD)
         if walk.toe_off[-1] >= 1.0 and len(steps) > 1 and down_by.any():
             # who comes to stand there stays as the last step ends: no lowering goes on
-            stands_at = float(len(steps) - 1)
-            share = smoothstep((walk.at - stands_at) / ENDING + 1.0)
-            down_by = down_by + share * (lowered(ENDING_SPREAD) - down_by)
+            share = smoothstep((walk.at - float(len(steps) - 1)) / ENDING + 1.0)
+            ways = [down_by + share * (lowered(spread) - down_by) for spread in ENDING_SPREADS]
+            up = walk.curves["center"][:, 1]
+            calm = (w for w in ways if _jolt(up - w, when, share > 0.0) < JOLT)
+            down_by = next(calm, ways[-1])
     walk.curves["center"][:, 1] -= down_by
     hip[..., 1] -= down_by[:, None]
     extra = _rear_raise(walk, body, stands, rear, hip)
@@ -122,6 +127,13 @@ def plan_contact(steps: Sequence[ReferenceStep], body: Body, ground: Ground) -> 
     for side in (0, 1):
         _swing(walk, body, ground, stands, targets, side, hip[:, side])
     return ContactPlan.of(walk, stands, targets, body)
+
+
+def _jolt(
+    height: Float[np.ndarray, "M"], when: Float[np.ndarray, "M"], late: Bool[np.ndarray, "M"]
+) -> float:
+    """Largest change of speed of the hips in the ``late`` part, meters per usual step squared."""
+    return float(np.abs(np.gradient(np.gradient(height, when), when))[late].max())
 
 
 def _when(walk: Proposal, steps: Sequence[ReferenceStep]) -> Float[np.ndarray, "M"]:

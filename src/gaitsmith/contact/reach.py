@@ -37,8 +37,9 @@ LIMIT = 0.9997
 PER_STEP, SPREAD = 60, 0.12
 #: The same on ground that is not level, where the hips come down farther.
 UNEVEN_SPREAD = 0.28
-#: The same where a walk ends in standing, and over what part of the last step it gets so.
-ENDING_SPREAD, ENDING = 0.05, 0.6
+#: The same where a walk ends in standing, the first that does not jolt, and over what part of the
+#: last step it gets so.
+ENDING_SPREADS, ENDING = (0.05, 0.08, 0.12, 0.28), 0.6
 #: How much nearer the rear ankle may come by raising its heel, at toe-off, over leg length.
 REAR_SLACK = 0.14
 #: Largest extra rise of the rear heel, radians, and the least, with which a flat foot rolls.

@@ -45,6 +45,8 @@ NEARLY_FLAT = float(np.radians(2.5))
 HEEL_DOWN = 0.3
 #: The heel that stays above on a deep step comes up so much more (radians).
 HEEL_UP = float(np.radians(24.0))
+#: The same in steps that turn or go aside: toes that bend farther would have to be quick.
+HEEL_UP_ASIDE = float(np.radians(18.0))
 #: Part of the height of what one foot alone steps on that the hips do not rise: its knee bends.
 SPARED = 0.25
 #: A lower rise (m) is no step.
@@ -139,8 +141,13 @@ class UnevenGenerator:
         rises = np.zeros(len(behind))
         if not self._climbs:
             rises = heel_rises(steps, references, lifted, stands, behind, body)
+        kinds = [step.kind for step in steps]
+        walks = np.array([kind not in LOCAL_KINDS for kind in (*kinds, kinds[-1])])
+        most = np.where(walks, HEEL_UP, HEEL_UP_ASIDE)
         on_steps = lie.stepped[behind[:, 1]]
-        rises[on_steps] = [_heel_rise(lie, i, body) for i in behind[on_steps, 1]]
+        rises[on_steps] = [
+            most[k] * _heel_rise(lie, behind[k, 1], body) for k in np.flatnonzero(on_steps)
+        ]
         lifted = [
             with_risen_heels(r, *two)
             for r, two in zip(lifted, pairwise(rises.tolist()), strict=True)
@@ -308,9 +315,9 @@ def _landing(
 
 
 def _heel_rise(lie: Lie, foot: int, body: Body) -> float:
-    """How far the other heel is up, more than on the level, as a foot comes down on a step."""
+    """How far the other heel is up as a foot comes down on a step, over the most."""
     drop = -float(lie.rise[foot]) / body.leg_length if lie.stepped[foot] else 0.0
-    return HEEL_UP * float(smoothstep(drop / BALL_FIRST))
+    return float(smoothstep(drop / BALL_FIRST))
 
 
 def _landing_pitch(lands: float, lie: Lie, foot: int, body: Body) -> float:
