@@ -253,7 +253,7 @@ def walk(
         "gaitsmith": __version__,
         "walk": {
             **said,
-            **({} if base == Flat() else {"ground": base.as_json()}),
+            **({} if base == Flat() else {"ground": base}),
             "body": body_to_dict(who),
             "gait": named,
             **({} if walker == "kinematic" else {"walker": walker}),

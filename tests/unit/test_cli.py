@@ -162,7 +162,7 @@ def test_version(run):
 DESIGNED = {"demo", "walk", "learn", "compose", "certify", "measure", "convert", "list"}
 OPTIONS = {
     "walk": "output distance path steps do scene ground body gait step-length speed cadence start "
-    "stop step-width toe-out vary fps seed json help",
+    "stop step-width toe-out walker vary fps seed json help",
     "demo": "output help",
     "list": "help",
 }

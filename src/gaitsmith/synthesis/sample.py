@@ -13,6 +13,7 @@ from gaitsmith.body.rig import skeleton_of
 from gaitsmith.contact.apply import local_legs
 from gaitsmith.conventions import SIDES
 from gaitsmith.geometry.rotations import exp
+from gaitsmith.ground import Ground
 from gaitsmith.motion.holding import frames_until
 from gaitsmith.motion.motion import Labels, Motion
 from gaitsmith.plan.timeline import Timeline, landing_at
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
     from gaitsmith.body.body import Body
     from gaitsmith.contact.apply import Poses
-    from gaitsmith.ground import Ground
     from gaitsmith.motion.skeleton import Skeleton
     from gaitsmith.synthesis.step import PreparedWalk
 
@@ -130,10 +130,11 @@ def _ground_text(ground: Ground) -> str:
     return json.dumps(ground.as_json(), sort_keys=True)
 
 
-def _recipe_text(recipe: dict[str, Any], ground: Ground) -> str:
-    """JSON of a recipe, whose ground is ``ground`` if it names one."""
+def _recipe_text(recipe: dict[str, Any]) -> str:
+    """JSON of a recipe, in which the ground of a walk may be a Ground."""
     walk = recipe.get("walk", {})
-    if "ground" not in walk:
+    ground = walk.get("ground")
+    if not isinstance(ground, Ground):
         return json.dumps(recipe, sort_keys=True)
     text = json.dumps({**recipe, "walk": {**walk, "ground": _HERE}}, sort_keys=True)
     return text.replace(json.dumps(_HERE), _ground_text(ground), 1)
@@ -160,6 +161,6 @@ def _labels(
         footstep_heading=plan.heading,
         footstep_time=landing,
         ground=_ground_text(ground),
-        recipe=_recipe_text(recipe, ground),
+        recipe=_recipe_text(recipe),
         path=plan.path,
     )
