@@ -95,11 +95,13 @@ def test_every_promise_is_kept_however_it_is_steered(seed):
     kept(steered(whims(seed)).motion())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "deg"), [(20, 8.0), (21, -11.0)])
 def test_on_slopes_too(seed, deg):
     kept(steered(whims(seed, seconds=5.0), ground=Slope(deg)).motion())
 
 
+@pytest.mark.slow
 def test_on_hills_too():
     # a sole on curved ground may touch, by chance, with what is not flagged
     schedule = whims(30, seconds=5.0)
@@ -267,6 +269,7 @@ def test_it_follows_its_path_again_when_no_heading_is_wished():
     assert abs(float(walker.advance(0.0).root_position[0])) < 0.05
 
 
+@pytest.mark.slow
 def test_before_what_cannot_be_walked_it_stops():
     """A wall in the way: it stands before it, and goes another way when told."""
     walker = LiveWalker(ground=Stairs(0.6, 0.5, 3))

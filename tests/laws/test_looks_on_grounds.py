@@ -223,6 +223,7 @@ def test_nobody_starts_or_ends_standing_across_a_ridge(aslant):
 # ----------------------------------------------------------------------------- refusals
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("how", "what", "z", "ground"),
     [

@@ -55,6 +55,7 @@ def test_a_kerb_across_the_way_is_gone_over(asked, body):
     assert json.loads(motion.labels.ground)["kind"] == "boxes"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ground", ["flat", "slope:7", "slope:-7"])
 def test_a_wide_platform_is_stepped_on(ground):
     motion = among(PLATFORM, do="walk to 0,5.5", ground=ground)
@@ -73,6 +74,7 @@ def test_what_is_narrow_is_walked_round():
     assert aside(motion) > 0.5
 
 
+@pytest.mark.slow
 def test_the_same_block_is_gone_over_on_a_given_way():
     motion = among(BLOCK, do="follow 0,8")
     assert lift(motion) == pytest.approx(0.22)
@@ -87,6 +89,7 @@ def test_what_is_high_for_a_child_is_low_for_an_adult():
     assert json.loads(child.labels.ground)["kind"] == "flat"
 
 
+@pytest.mark.slow
 def test_a_way_without_footholds_is_walked_round():
     """Planks too near to each other for a foot between them, and too narrow to stand on."""
     planks = [box(-0.7, z, 0.7, z + 0.03, 0.15, f"plank {z:.2f}") for z in np.arange(2.0, 4.0, 0.1)]
@@ -97,6 +100,7 @@ def test_a_way_without_footholds_is_walked_round():
         walk(distance=6.0, surroundings=Surroundings(tuple(planks)))
 
 
+@pytest.mark.slow
 def test_a_goal_may_lie_on_something_low():
     motion = among(PLATFORM, do="walk to 0,3; turn left 180; walk to 0,0")
     assert lift(motion) == pytest.approx(0.2)

@@ -60,13 +60,14 @@ def landing_knee(motion):
 # ------------------------------------------------------------------------------- promises
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(body=heights(), ratio=st.floats(0.35, 0.95), deg=st.floats(-15.0, 15.0))
 def test_promises_on_slopes(body, ratio, deg):
     who = person(body)
     walked(distance=4.0, body=who, step_length=ratio * who.leg_length, ground=Slope(deg))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gait", ["neutral", "winter", "sneaky", "elderly"])
 def test_promises_on_a_curve(gait):
     walked(path="0,0 0,2 1.5,3.5 3,3", gait=gait)
@@ -214,6 +215,7 @@ def test_level_walking_turns_no_joint_fast():
 # ------------------------------------------------------------------------------- any gait
 
 
+@pytest.mark.slow
 def test_every_built_in_gait_has_elevation_data():
     for name in ("neutral", "winter", "proud"):
         walk = by_elevation(GAITS[name](None)).walk

@@ -19,7 +19,13 @@ TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))
 #: Pages whose examples are run; a tutorial must have some, the others may.
 PAGES = [*sorted(DOCS.rglob("*.md")), ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
 #: Those whose examples take long.
-SLOW = {"docs/obstacles.md", "docs/reference/cli.md", "docs/reference/grounds.md", "docs/styles.md"}
+#: Pages whose examples take a second and more; of the commands only the README's run every time.
+SLOW = {
+    *("docs/obstacles.md", "docs/reference/cli.md", "docs/reference/grounds.md", "docs/styles.md"),
+    *("docs/index.md", "docs/papers/sm01.md", "docs/tutorials/learn-a-gait.md"),
+    *("docs/tutorials/scenes.md", "docs/tutorials/steering.md", "docs/tutorials/first-walk.md"),
+    "docs/tutorials/measure-a-clip.md",
+}
 SHELL = {"bash", "console", "sh", "shell"}
 #: Commands that a tutorial may show and that a test does not run.
 SET_UP = {"git", "make", "pip", "python3", "source"}
