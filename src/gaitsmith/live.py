@@ -24,6 +24,7 @@ from gaitsmith.plan.pace import choose_pace
 from gaitsmith.plan.start import Start, start_of, start_to_dict
 from gaitsmith.plan.timeline import landing_at
 from gaitsmith.plan.where import read_where
+from gaitsmith.synthesis.gaits import with_walker
 from gaitsmith.synthesis.generators import walking_generator
 from gaitsmith.synthesis.habits import own_pace, stance_of
 from gaitsmith.synthesis.sample import local_rotations
@@ -108,7 +109,7 @@ class LiveWalker:
 
     Parameters
     ----------
-    body, gait, ground, step_width, toe_out, manner, banking
+    body, gait, walker, ground, step_width, toe_out, manner, banking
         As :func:`gaitsmith.walk` takes them.
     path
         What is followed while no heading is asked for, and where it stops.
@@ -139,6 +140,7 @@ class LiveWalker:
         *,
         body: str | float | FilePath | Body = 1.75,
         gait: str | FilePath | LearnedGait | dict[str, Any] = "neutral",
+        walker: str = "kinematic",
         ground: str | FilePath | Ground | dict[str, Any] = "flat",
         path: PathLike | None = None,
         start: Start | dict[str, Any] | None = None,
@@ -164,6 +166,7 @@ class LiveWalker:
         one_of("banking", banking, BANKINGS)
         manner = manner or Manner()
         style, named = gait_from(gait, manner)
+        style = with_walker(style, walker)
         stance = stance_of(who, step_width, toe_out, style.habits)
         self._usual = None if style.habits is None else own_pace(who, style.habits)
         begin = self._start(start)
@@ -188,6 +191,7 @@ class LiveWalker:
                 "ground": self._ground.as_json(),
                 "body": body_to_dict(who),
                 "gait": named,
+                "walker": walker,
                 "start": start_to_dict(begin),
                 "step_width": stance.width,
                 "toe_out": stance.toe_out,

@@ -96,9 +96,10 @@ def test_every_promise_is_kept_however_it_is_steered(seed):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("walker", ["kinematic", "elevation"])
 @pytest.mark.parametrize(("seed", "deg"), [(20, 8.0), (21, -11.0)])
-def test_on_slopes_too(seed, deg):
-    kept(steered(whims(seed, seconds=5.0), ground=Slope(deg)).motion())
+def test_on_slopes_too(seed, deg, walker):
+    kept(steered(whims(seed, seconds=5.0), ground=Slope(deg), walker=walker).motion())
 
 
 @pytest.mark.slow

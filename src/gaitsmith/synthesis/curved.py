@@ -30,7 +30,7 @@ from gaitsmith.synthesis.straight import StraightGenerator, climbs_of
 from gaitsmith.synthesis.swing_path import SwingPath
 from gaitsmith.synthesis.turning import TRUNK_LEAN, Turning, bend_upper
 from gaitsmith.synthesis.upper_body import RuleOverlay
-from gaitsmith.walks.model import StepRequest, StraightWalk
+from gaitsmith.walks.model import StepRequest, StraightWalk, climbs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -85,7 +85,7 @@ class CurvedGenerator:
         self._banking = one_of("banking", banking, BANKINGS)
         self._exact = exact
         self._straight = StraightGenerator(walk, ground, self._overlay)
-        self._asker = Asker(walk, self._overlay)
+        self._asker, self._climbs = Asker(walk, self._overlay), climbs(walk)
 
     def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
         """See :meth:`gaitsmith.synthesis.step.StepGenerator.prepare`."""
@@ -107,10 +107,10 @@ class CurvedGenerator:
         # the table is of one pace; so are then the steps that it does not hold
         pace = usual_duration(steps) if tabled else None
         requests = _requests(body, state, steps, bent.length, self._overlay.strides, pace)
-        requests = [
-            replace(r, climbs=climbs_of(s, self._walk))
-            for r, s in zip(requests, steps, strict=True)
-        ]
+        if self._climbs:
+            requests = [
+                replace(r, climbs=climbs_of(s)) for r, s in zip(requests, steps, strict=True)
+            ]
         anchor = _steady(bent.length[:, 1])
         if tabled:
             _bend_ends(straight, bent.length, anchor)

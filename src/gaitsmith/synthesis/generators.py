@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from gaitsmith.ground import Flat
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.synthesis.straight import StraightGenerator
-from gaitsmith.walks.model import ClimbingWalk
+from gaitsmith.walks.model import climbs
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -37,8 +37,7 @@ def generator_for(
         from gaitsmith.synthesis.uneven import UnevenGenerator
 
         level = generator_for(plan, style, Flat(), banking, ahead=ahead, gaits=gaits)
-        climbs = isinstance(style.walk, ClimbingWalk) and style.walk.climbs
-        return UnevenGenerator(level, ground, climbs=climbs)
+        return UnevenGenerator(level, ground, climbs=climbs(style.walk))
     if ahead:
         return StraightGenerator(style.walk, ground, style.overlay)
     from gaitsmith.synthesis.curved import CurvedGenerator
@@ -65,4 +64,4 @@ def walking_generator(style: Gait, ground: Ground, banking: str) -> StepGenerato
     from gaitsmith.synthesis.uneven import UnevenGenerator
 
     level = CurvedGenerator(style.walk, Flat(), style.overlay, banking=banking)
-    return UnevenGenerator(level, ground)
+    return UnevenGenerator(level, ground, climbs=climbs(style.walk))

@@ -14,7 +14,7 @@ from gaitsmith.errors import InvalidInputError
 from gaitsmith.synthesis.overlay import overlays, stride_of
 from gaitsmith.synthesis.step import PreparedStep, TabledStep, WalkerState
 from gaitsmith.synthesis.upper_body import RuleOverlay
-from gaitsmith.walks.model import ClimbingWalk, StepRequest
+from gaitsmith.walks.model import StepRequest, climbs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -97,6 +97,7 @@ class StraightGenerator:
         self, walk: StraightWalk, ground: Ground, overlay: Overlayer | None = None
     ) -> None:
         self._walk, self._ground, self._overlay = walk, ground, overlay or RuleOverlay()
+        self._climbs = climbs(walk)
         self._sagittal = lru_cache(maxsize=512)(self._walk.step)
 
     def prepare(self, body: Body, state: WalkerState, step: PlannedStep) -> PreparedStep:
@@ -124,7 +125,7 @@ class StraightGenerator:
                 kind=step.kind,
                 previous_duration=_rounded(state.duration),
                 stride=stride_of(step) % self._overlay.strides,
-                climbs=climbs_of(step, self._walk),
+                climbs=climbs_of(step) if self._climbs else (0.0, 0.0),
             )
             setting = _Setting(
                 direction=step.stance.direction,
@@ -172,10 +173,8 @@ class StraightGenerator:
         return TabledStep(step.duration, end, reference, body, self._ground)
 
 
-def climbs_of(step: PlannedStep, walk: StraightWalk) -> tuple[float, float]:
-    """What the request says of climbing: nothing where ``walk`` does not ask for it."""
-    if not (isinstance(walk, ClimbingWalk) and walk.climbs):
-        return (0.0, 0.0)
+def climbs_of(step: PlannedStep) -> tuple[float, float]:
+    """What the request says of climbing, to a picometer."""
     before, this = (round(climb, 12) for climb in step.climbs)
     return before, this
 

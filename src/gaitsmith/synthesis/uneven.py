@@ -133,10 +133,13 @@ class UnevenGenerator:
                 state = prepared[-1].end
         picks = [[number[id(f)] for f in _feet(s)] for s in steps]
         references = [p.reference for p in prepared]
-        lifted = [
-            _lifted(s, r, lie, pick, body)
-            for s, r, pick in zip(steps, references, picks, strict=True)
-        ]
+        lifted = _leaned(
+            [
+                _lifted(s, r, lie, pick, body)
+                for s, r, pick in zip(steps, references, picks, strict=True)
+            ],
+            body,
+        )
         behind = np.array([pick[:2] for pick in picks] + [picks[-1][1:]])
         rises = np.zeros(len(behind))
         if not self._climbs:
@@ -257,10 +260,30 @@ def _over_boxes(
     return out
 
 
+def _leaned(
+    lifted: Sequence[tuple[ReferenceStep, Float[np.ndarray, "T"]]], body: Body
+) -> list[ReferenceStep]:
+    """Steps whose trunks lean for the slopes that go with them, all at once."""
+    lean = _lean(np.concatenate([slope for _, slope in lifted]))
+    if lean.any():
+        curves = [step.curves for step, _ in lifted]
+        pelvis, upper = leaning(
+            body,
+            np.concatenate([c.pelvis for c in curves]),
+            np.concatenate([c.upper for c in curves]),
+            lean,
+        )
+        first = 0
+        for c in curves:
+            own = slice(first, first := first + len(c.phase))
+            c.pelvis[:], c.upper[:] = pelvis[own], upper[own]
+    return [step for step, _ in lifted]
+
+
 def _lifted(
     step: PlannedStep, reference: ReferenceStep, lie: Lie, pick: list[int], body: Body
-) -> ReferenceStep:
-    """``reference``, which is level, on the ground."""
+) -> tuple[ReferenceStep, Float[np.ndarray, "T"]]:
+    """``reference``, which is level, on the ground, not leaning yet; slope as the hips feel it."""
     curves = reference.curves
     at = curves.center[:, [0, 2]] + reference.origin[[0, 2]]
     base, blend = _base(step, lie, pick, at, curves.phase)
@@ -273,15 +296,11 @@ def _lifted(
     lifted.center[:] -= back[:, None] * ahead(curves.heading)
     lifted.ankle[..., 1] += base[:, None]
     lifted.pitch[:], lifted.bend[:] = _landing(reference, lie, pick, body)
-    lifted.pelvis[:], lifted.upper[:] = leaning(body, curves.pelvis, curves.upper, _lean(slope))
     foothold = np.array(reference.foothold)
     for foot in (step.origin, step.stance):
         foothold[foot.side] = foot.position
-    return reference.with_(
-        curves=lifted,
-        foothold=foothold,
-        target=step.target.position,
-    )
+    out = reference.with_(curves=lifted, foothold=foothold, target=step.target.position)
+    return out, slope
 
 
 def _landing(

@@ -158,3 +158,8 @@ class ClimbingWalk(StraightWalk, Protocol):
     def foresee(self, body: Body, requests: Sequence[StepRequest]) -> None:
         """All ``requests`` are about to be asked: what they share may be found at once."""
         ...
+
+
+def climbs(walk: StraightWalk) -> bool:
+    """Whether ``walk`` steps otherwise up and down hill."""
+    return isinstance(walk, ClimbingWalk) and walk.climbs
