@@ -64,6 +64,15 @@ def test_the_knee_in_front_does_not_fold_uphill(gait):
     assert ten < fifteen < max(level + 17.0, 38.0)
 
 
+@pytest.mark.parametrize("gait", ["neutral", "winter", "proud"])
+def test_the_knee_behind_yields_downhill_but_does_not_fold(gait):
+    """It bears the weight as the other foot lands at -10 deg: 60 deg before."""
+    motion = walked(Slope(-10.0), gait)
+    knee = legs(motion)[0]
+    behind = [knee[frame, 1 - side] for frame, side in landings(motion, (3, 4))]
+    assert 25.0 < np.mean(behind) < 52.0
+
+
 @pytest.mark.parametrize("body", [1.2, 2.1])
 @pytest.mark.parametrize("share", [0.5, 0.75])
 def test_whoever_walks_and_however_long_the_steps(body, share):

@@ -292,7 +292,7 @@ def _lifted(
     lifted.center[:] += base[:, None] * UP
     # hips of a walk that climbs know slopes, but no stairs
     felt = lie.slope if lie.level_walk else np.where(lie.stepped, lie.slope, 0.0)
-    back = blend(held_back(felt, body)) * holding(curves.phase, step.kind)
+    back = blend(held_back(felt, lie.stepped, body)) * holding(curves.phase, step.kind)
     lifted.center[:] -= back[:, None] * ahead(curves.heading)
     lifted.ankle[..., 1] += base[:, None]
     lifted.pitch[:], lifted.bend[:] = _landing(reference, lie, pick, body)

@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 #: How far the hips stay back (over the leg) for a slope (rise per meter); standing it is so much
 #: of it, which holds the balance against the trunk that leans.
 HELD_BACK, STANDING = 0.37, 0.5
+#: How far they go ahead downhill, likewise: the knee of the leg behind, which bears, yields to
+#: some 48 deg at -10 deg before the other foot lands (U7), not to 60.
+AHEAD = 0.4
 #: Slope that steeper ones, as stairs are, come near to in this.
 STEEPEST_BACK = 0.33
 #: Most that the heel behind comes up for it (radians).
@@ -48,10 +51,15 @@ ROLLS = float(np.radians(10.0))
 STEEP, LEAST = 0.02, float(np.radians(1.0))
 
 
-def held_back(slope: Float[np.ndarray, "k"], body: Body) -> Float[np.ndarray, "k"]:
-    """How far the hips of who walks stay back for a slope along the walk, meters."""
-    up = np.maximum(slope, 0.0)
-    return HELD_BACK * body.leg_length * STEEPEST_BACK * np.tanh(up / STEEPEST_BACK)
+def held_back(
+    slope: Float[np.ndarray, "k"], stepped: Bool[np.ndarray, "k"], body: Body
+) -> Float[np.ndarray, "k"]:
+    """How far the hips of who walks stay back for a slope along the walk, meters.
+
+    Downhill they go ahead, else the knee behind would have to fold; not on steps.
+    """
+    share = np.where(slope > 0.0, HELD_BACK, np.where(stepped, 0.0, AHEAD))
+    return share * body.leg_length * STEEPEST_BACK * np.tanh(slope / STEEPEST_BACK)
 
 
 def holding(phase: Float[np.ndarray, "T"], kind: StepKind) -> Float[np.ndarray, "T"]:
