@@ -13,7 +13,7 @@ from gaitsmith.ground import HeightField
 
 TARGET = Path(__file__).parent.parent / "docs/pictures"
 #: Rows of a contact sheet (shares of its height) that show the figures and their legs' way.
-FIGURES, WAY = (0.055, 0.292), (0.655, 0.843)
+FIGURES, WAY = (0.055, 0.274), (0.665, 0.845)
 
 
 def box_and_bar() -> HeightField:
