@@ -164,26 +164,30 @@ def raised_heel(
     limit = REAR_REACH * leg_length
     extra = np.zeros(len(pitch))
 
-    def too_far(
-        more: Float[np.ndarray, "k"], which: Bool[np.ndarray, "n"]
+    def beyond_reach(
+        more: Float[np.ndarray, "k"],
+        on: Footholds,
+        hips: Float[np.ndarray, "k 3"],
+        own: Float[np.ndarray, "k"],
+        toes: Float[np.ndarray, "k"],
     ) -> Bool[np.ndarray, "k"]:
-        raised = np.where(more > 0.0, np.minimum(pitch[which] - more, -1e-9), pitch[which])
-        ankle = stand.at(which).ankle(foot, raised, meta[which])
-        return ((ankle - hip[which]) ** 2).sum(-1) > limit**2
+        raised = np.where(more > 0.0, np.minimum(own - more, -1e-9), own)
+        return ((on.ankle(foot, raised, toes) - hips) ** 2).sum(-1) > limit**2
 
-    far = too_far(extra, np.ones(len(pitch), dtype=np.bool_))
+    far = beyond_reach(extra, stand, hip, pitch, meta)
     if not far.any():
         return extra
+    them = (stand.at(far), hip[far], pitch[far], meta[far])
     low, high = np.zeros(int(far.sum())), np.full(int(far.sum()), LARGEST_RAISE)
     open_ = np.ones(len(low), dtype=np.bool_)
     for angle in np.linspace(0.0, LARGEST_RAISE, 21)[1:]:
-        fits = open_ & ~too_far(np.full(len(low), angle), far)
+        fits = open_ & ~beyond_reach(np.full(len(low), angle), *them)
         high[fits] = angle
         open_ &= ~fits
         low[open_] = angle
     for _ in range(34):
         middle = 0.5 * (low + high)
-        beyond = too_far(middle, far)
+        beyond = beyond_reach(middle, *them)
         low, high = np.where(beyond, middle, low), np.where(beyond, high, middle)
     extra[far] = np.maximum(high, LEAST_RAISE)
     return np.minimum(extra, np.maximum(STEEPEST + pitch, 0.0))
