@@ -150,6 +150,7 @@ def test_in_the_middle_of_a_step_its_motion_is_whole():
 # --------------------------------------------------------------------------------- determinism
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 3])
 def test_how_often_it_is_called_changes_nothing(seed):
     """The same commands at the same times, advanced whole or in crumbs: 1e-9."""
@@ -239,6 +240,7 @@ def test_it_stands_until_it_is_told_to_go():
     assert np.ptp(walker.motion().root_position, axis=0).max() == 0.0
 
 
+@pytest.mark.slow
 def test_a_foot_under_way_still_turns_and_later_does_not():
     """The commit horizon: two thirds of a step."""
 

@@ -67,6 +67,7 @@ def test_a_wide_platform_is_stepped_on(ground):
     assert aside(motion) < 0.1
 
 
+@pytest.mark.slow
 def test_what_is_narrow_is_walked_round():
     """A block in a long way: a little aside costs less than a step up and down."""
     motion = among(BLOCK, do="walk to 0,8")
@@ -81,6 +82,7 @@ def test_the_same_block_is_gone_over_on_a_given_way():
     assert aside(motion) < 0.1
 
 
+@pytest.mark.slow
 def test_what_is_high_for_a_child_is_low_for_an_adult():
     wide = box(-0.8, 2.0, 0.8, 2.4, 0.2)
     child, adult = (among(wide, do="walk to 0,4", body=body) for body in (1.2, 1.8))
@@ -114,6 +116,7 @@ def test_a_high_block_on_a_given_way_is_refused():
     assert aside(among(high, do="walk to 0,8")) > 0.5
 
 
+@pytest.mark.slow
 def test_over_what_ends_below_the_hands_they_may_swing():
     """Beside a bench there is room for the legs; only a wall of the same outline is in the way."""
     bench = box(0.2, 1.0, 1.5, 3.0, 0.35, "bench")

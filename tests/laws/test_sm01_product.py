@@ -188,6 +188,7 @@ def test_climbing_steps_join(body, ratio, grade):
     np.testing.assert_allclose(one.pitch[-1, ::-1], two.pitch[0], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_hips_keep_their_speed_at_heel_strike():
     """Acceptance 7.3: a step of less than 0.05 m/s, where the paper's walker has 0.4."""
     fps = 4000

@@ -232,6 +232,7 @@ def test_what_nobody_can_walk_is_refused_with_place_and_limit(ground, says):
         gaitsmith.walk(distance=3.2, ground=ground)
 
 
+@pytest.mark.slow
 def test_a_gap_is_refused_and_a_narrow_one_is_stepped_over():
     def trench(width):
         height = np.zeros((401, 101))

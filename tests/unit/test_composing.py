@@ -111,6 +111,7 @@ def test_styles_may_be_given_as_gaits(recipe):
     assert gait.recipe["sources"][0]["from"] == "tired"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

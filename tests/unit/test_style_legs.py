@@ -162,6 +162,7 @@ def test_a_strong_pull_leaves_the_asked_weights(found):
     assert stronger == pytest.approx(0.1 * strong, rel=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["greedy", "joint"])
 def test_the_papers_search_gets_nearer(found, method):
     mix = exchange("elderly", "happy")

@@ -133,6 +133,7 @@ def test_cells_and_grid_lie_on_the_ground(base):
     assert (points[:, [0, 2]] <= high + 1e-9).all()
 
 
+@pytest.mark.slow
 def test_the_same_scene_gives_the_same_bytes(tmp_path):
     performance = scene("slope:8", BENCH, STEP)
     scene_gif(performance, tmp_path / "one.gif", width=240, fps=4.0)
