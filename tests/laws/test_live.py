@@ -320,3 +320,8 @@ def test_it_is_saved_as_any_motion(tmp_path):
         gaitsmith.save(walker.motion(), tmp_path / f"live.{suffix}")
     again = gaitsmith.load(tmp_path / "live.npz")
     assert np.allclose(again.rotations, walker.motion().rotations, atol=1e-7)
+
+
+def test_who_stands_where_no_step_can_be_taken_is_told_so():
+    with pytest.raises(InfeasibleError, match=r"start \(0.00, 0.00\): no step can be taken"):
+        LiveWalker(ground=Slope(45.0))

@@ -84,6 +84,12 @@ class Steering:
         self._changed_by = 0.0
         self._refused: Wish | None = None
         planned = self.gait.ahead(self.feet, replace(self.wish, stop=False, heading=None), 2)
+        if not planned:
+            x, _, z = (0.5 * (self.feet[-1].position + self.feet[-2].position)).tolist()
+            raise InfeasibleError(
+                f"start ({x:.2f}, {z:.2f}): no step can be taken from there; the ground ahead is "
+                "too steep or has no place for a foot: start elsewhere or with another heading"
+            )
         self._still = self._standing(planned)
         self._plan = LivePlan(plan_contact([self._still], self.body, self.ground), 0)
 
