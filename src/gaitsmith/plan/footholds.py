@@ -14,8 +14,8 @@ import numpy as np
 
 from gaitsmith.conventions import SIDE_SIGN, ahead, leftward
 from gaitsmith.errors import InfeasibleError
-from gaitsmith.ground import Flat, HeightField, Slope
-from gaitsmith.plan.footing import Footing, footing
+from gaitsmith.ground import Flat, Slope
+from gaitsmith.plan.footing import Footing, footing, never_sinks
 from gaitsmith.plan.lengths import FIRST_STEP, Stance
 from gaitsmith.plan.nearest import nearest_stand, said
 
@@ -93,11 +93,8 @@ def treads_near(path: Path, stance: Stance, ground: Ground, body: Body) -> bool:
         reach = 0.5 * body.leg_length
         (x0, z0), (x1, z1) = middle.min(0) - reach, middle.max(0) + reach
         return len(ground.edges((float(x0), float(z0)), (float(x1), float(z1)))) > 0
-    if isinstance(ground, HeightField):
-        # a field bends so little at most that no sole on it can sink far: no place need be tried
-        along = body.foot.length + ground.cell
-        if 0.5 * ground.most_bent * along**2 < MOST_SUNK:
-            return False
+    if never_sinks(ground, body.foot, MOST_SUNK):
+        return False
     places = Places.of(path, stance, ground, body)
     return not all((f.stands & (f.sinks <= MOST_SUNK)).all() for f in places.footings)
 

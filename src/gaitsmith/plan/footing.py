@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaitsmith.ground import foot_plane
+from gaitsmith.ground import HeightField, foot_plane
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -62,6 +62,16 @@ class Footing:
     behind: Float[np.ndarray, "n"]
     rough: Float[np.ndarray, "n"]
     sinks: Float[np.ndarray, "n"]
+
+
+def never_sinks(ground: Ground, foot: Foot, depth: float) -> bool:
+    """Whether ground bends so little everywhere that it surely sinks into no sole by ``depth`` m.
+
+    Then no place need be tried for that.
+    """
+    if not isinstance(ground, HeightField):
+        return False
+    return 0.5 * ground.most_bent * (foot.length + ground.cell) ** 2 < depth
 
 
 def footing(

@@ -12,7 +12,7 @@ from gaitsmith.conventions import SIDES, ahead
 from gaitsmith.errors import GaitsmithWarning, InfeasibleError
 from gaitsmith.ground import Flat, Slope
 from gaitsmith.plan.footholds import HIGHEST, MOST_HANGING, MOST_SUNK, SHORT_TREADS, STEEPEST
-from gaitsmith.plan.footing import footing
+from gaitsmith.plan.footing import footing, never_sinks
 from gaitsmith.plan.footsteps import StepPlan
 from gaitsmith.plan.nearest import nearest_stand, said
 
@@ -68,7 +68,7 @@ def _off_ridges(plan: StepPlan, body: Body, ground: Ground) -> StepPlan:
     Feet that stand side by side there are set apart fore and aft, as little as does and rather one
     ahead and one back, so that their middle stays. Given footsteps are where they are said to be.
     """
-    if plan.path is None or isinstance(ground, Slope):
+    if plan.path is None or isinstance(ground, Slope) or never_sinks(ground, body.foot, MOST_SUNK):
         return plan
     swings = int(plan.side[0] != plan.side[2])  # which of the first two: it stands behind
     ends = [[swings, 1 - swings]] * (plan.kinds[0] == "start")
