@@ -213,6 +213,37 @@ def test_level_walking_turns_no_joint_fast():
         assert np.degrees(turned.max()) * 120 / 60 < 12.0
 
 
+def test_toes_leave_as_the_own_walk_has_them():
+    """Between samples, too: the meta angle ends there, and a set must not show half of it."""
+    legs = neutral_legs()
+    for toe_off in (0.2, 0.2466443, 0.31):
+        late = LateToes(legs.walk, toe_off)
+        walk = ElevationWalk(spanning_sets(replace(legs, walk=late)))
+        asked = StepRequest(0, legs.length, legs.length, legs.length, 0.55)
+        own, mixed = late.step(legs.body, asked), walk.step(legs.body, asked)
+        ends = [s.meta[s.phase <= s.toe_off, 1][-1] for s in (own, mixed)]
+        assert ends[1] == pytest.approx(ends[0], abs=np.radians(1.0))
+        assert ends[0] > np.radians(5.0)
+
+
+class LateToes:
+    """A walk whose toes leave at another phase."""
+
+    def __init__(self, walk, toe_off):
+        self.walk, self.toe_off = walk, toe_off
+
+    def step(self, body, request):
+        step = self.walk.step(body, request)
+        phase = np.interp(step.phase, [0.0, step.toe_off, 1.0], [0.0, self.toe_off, 1.0])
+        flat, heel, meta = (
+            float(np.interp(e, step.phase, phase)) if e < 1.0 else e
+            for e in (step.flat, step.heel_off, step.meta_off)
+        )
+        return replace(
+            step, phase=phase, toe_off=self.toe_off, flat=flat, heel_off=heel, meta_off=meta
+        )
+
+
 # ------------------------------------------------------------------------------- any gait
 
 

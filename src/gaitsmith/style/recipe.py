@@ -159,8 +159,10 @@ def _styles(table: Any, wrong: list[str]) -> dict[str, Style]:
             out[name] = Style(value)
             continue
         if not isinstance(value, dict) or not isinstance(value.get("from"), str):
+            said = repr(value) if isinstance(value, dict | int | float) else type(value).__name__
             wrong.append(
-                f"styles.{name} must be a gait, a file, or a table with 'from', got {value!r}"
+                f"styles.{name} must be the name of a gait, a file, or a table with 'from', got "
+                f"{said}; gaits themselves are given as styles={{name: gait}}"
             )
             continue
         wrong += _unknown_keys(f"styles.{name}.", value, _STYLE)

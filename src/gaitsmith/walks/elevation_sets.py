@@ -163,12 +163,24 @@ def _planted(legs: Legs, length: float, side: int = LEFT) -> _Stride:
     # heel rocker, flat, heel off: never back, so that the foot rolls
     stance = np.minimum.accumulate(read(own, own.pitch[:, :1])[:, 0])
     pitch = np.concatenate([stance, read(other, other.pitch[:, 1:])[:, 0]])
-    meta = np.concatenate([read(own, own.meta[:, :1])[:, 0], read(other, other.meta[:, 1:])[:, 0]])
+    meta = np.concatenate([read(own, own.meta[:, :1])[:, 0], _rolling_off(other, phase)])
     ahead = np.array([length, 0.0])
     middle = np.concatenate([read(own, own.center), ahead + read(other, other.center)])
     swing = ahead + read(other, other.ankle[:, 1])
     stride = _Stride(length, pitch, np.tile(swing, (2, 1)), middle, meta, 0.5 + 0.5 * other.toe_off)
     return _on_round_heel(legs.body, stride, 0.0)
+
+
+def _rolling_off(step: SagittalStep, phase: Float[np.ndarray, "k"]) -> Float[np.ndarray, "k"]:
+    """Meta of the foot behind, fading after toe-off.
+
+    Of a foot that swings there is none; but who reads it between samples must not meet the drop.
+    """
+    bears = step.phase <= step.toe_off
+    last = float(step.meta[bears, 1][-1])
+    out = pchip(step.phase[bears], step.meta[bears, 1:], np.minimum(phase, step.toe_off))[:, 0]
+    gone = smoothstep((phase - step.toe_off) / (1.0 - step.toe_off))
+    return np.where(phase <= step.toe_off, out, last * (1.0 - gone))
 
 
 def _on_round_heel(body: Body, stride: _Stride, slope: float) -> _Stride:
