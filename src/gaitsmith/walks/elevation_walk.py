@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
 #: Phase of the step at which the weights of the step asked for are reached ([SM01]: 0.46 strides).
 SETTLED = 0.92
+#: Phase of the step by which the front leg alone leads the hips; later if toes leave later.
+HANDED = 0.42
 #: A sole that is turned by less lies flat, radians: no heel leaves and comes back by a hair.
 FLAT = 1e-4
 #: Phases of the swing until which the foot leaves where it bore, and from which it goes to land.
@@ -256,8 +258,13 @@ class _Drawn:
         ankle += (1.0 - smoothstep(np.minimum(phase / LEFT_BEHIND, 1.0)))[:, None] * lies
         ankle = turned(ankle, data_slope) - [previous, fell]
         behind = ankle - leg - half - start
-        hands = smoothstep(np.minimum(phase / toe_off, 1.0))[:, None]
-        center = behind + hands * (center - behind)
+        off = behind - center
+        last = int(rear.sum()) - 1
+        slope = (off[last] - off[last - 1]) / (phase[last] - phase[last - 1])
+        on = np.maximum(phase - toe_off, 0.0)[:, None]  # where it has left: as it was about to
+        off = np.where(rear[:, None], off, off[last] + slope * on)
+        hands = _minimum_jerk(phase / max(toe_off, HANDED))[:, None]
+        center = center + (1.0 - hands) * off
         center[:, 1] += (weights * figure.above).sum(axis=1)
         # heights from the line: of the step before at first, of this one at last
         grades = [rise / length if length > 0.0 else 0.0 for length, rise in asked]
