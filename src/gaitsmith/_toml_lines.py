@@ -1,14 +1,33 @@
-"""Which line of a TOML file says what: good enough for the place of an error."""
+"""TOML files, and which line of one says what: good enough for the place of an error."""
 
 from __future__ import annotations
 
 import re
+from typing import TYPE_CHECKING, Any
+
+from gaitsmith.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 #: Keys and indices from the top of a document.
 Place = tuple[str | int, ...]
 
 _HEADER = re.compile(r"\s*(\[\[?)\s*([\w.\- ]+?)\s*\]\]?\s*(?:#.*)?$")
 _KEY = re.compile(r"\s*([\w-]+)\s*=(.*)$")
+
+
+def read_toml(path: Path) -> tuple[str, dict[str, Any]]:
+    """Text and content of a TOML file; FileFormatError if it is none."""
+    import tomllib  # late: few files are read
+
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+        return text, tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise FileFormatError(path, f"not a TOML file: {error}") from None
+    except RecursionError:
+        raise FileFormatError(path, "not a TOML file: nested too deep") from None
 
 
 def lines_of(text: str) -> dict[Place, int]:

@@ -20,6 +20,12 @@ def smoothstep(u: Float[np.ndarray, "*n"] | float) -> Float[np.ndarray, "*n"]:
     return u * u * (3.0 - 2.0 * u)
 
 
+def minimum_jerk(u: Float[np.ndarray, "*n"] | float) -> Float[np.ndarray, "*n"]:
+    """``10u^3 - 15u^4 + 6u^5`` on [0, 1]: eases with no speed and no acceleration at both ends."""
+    u = np.clip(np.asarray(u, dtype=np.float64), 0.0, 1.0)
+    return u**3 * (10.0 - 15.0 * u + 6.0 * u**2)
+
+
 def pchip_slopes(
     x: Float[np.ndarray, "n"], y: Float[np.ndarray, "n *c"]
 ) -> Float[np.ndarray, "n *c"]:

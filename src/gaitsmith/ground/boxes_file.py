@@ -5,7 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from gaitsmith._toml_lines import line_at, lines_of
+from gaitsmith._toml_lines import line_at, lines_of, read_toml
 from gaitsmith.errors import FileFormatError, GaitsmithError, InvalidInputError
 from gaitsmith.ground.boxes import Box, Boxes
 
@@ -31,15 +31,7 @@ def read_boxes(path: Path, read_base: Callable[[str, Path], Ground]) -> Boxes:
     FileFormatError
         With everything that is wrong, each by line, table and key.
     """
-    import tomllib
-
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-        data = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise FileFormatError(path, f"not a TOML file: {error}") from None
-    except RecursionError:
-        raise FileFormatError(path, "not a TOML file: nested too deep") from None
+    text, data = read_toml(path)
     problems = _Problems(lines_of(text))
     problems.unknown((), data, KEYS)
     base = problems.tried(("ground",), lambda: _base(data.get("ground", "flat"), path, read_base))

@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaitsmith._toml_lines import Place, line_at, lines_of
+from gaitsmith._toml_lines import Place, line_at, lines_of, read_toml
 from gaitsmith.errors import FileFormatError, GaitsmithError
 from gaitsmith.plan.surroundings import Surroundings
 from gaitsmith.scene.model import Scene, Walker
@@ -39,16 +39,8 @@ def read_scene(path: str | Path) -> Scene:
     OSError
         If the file cannot be opened.
     """
-    import tomllib
-
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-        data = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise FileFormatError(path, f"not a TOML file: {error}") from None
-    except RecursionError:
-        raise FileFormatError(path, "not a TOML file: nested too deep") from None
+    text, data = read_toml(path)
     reading = _Reading(path, data, lines_of(text))
     table = reading.table()
     if reading.problems or table is None:

@@ -13,6 +13,7 @@ import numpy as np
 
 from gaitsmith._checks import frozen_array
 from gaitsmith.errors import InfeasibleError, InvalidInputError
+from gaitsmith.geometry.curves import minimum_jerk
 from gaitsmith.synthesis.exact_figure import ExactFigure, X, Y, Z, about, apply, sagittal
 from gaitsmith.synthesis.exact_foot import Landing, land, stand
 from gaitsmith.synthesis.exact_legs import Legs, LegSolver, Manners, Plane, Release
@@ -201,7 +202,7 @@ class ExactWalker:
     ) -> tuple[Legs, _State]:
         """All instants of one step, and the state that the next one starts from."""
         side = index % 2
-        moved = _minimum_jerk(time / _SETTLED)[:, None]
+        moved = minimum_jerk(time / _SETTLED)[:, None]
         weights = state.weights + moved * (target - state.weights)
         own, other = self.data(weights, time), self.data(weights, time + 0.5)
         plane = Plane(time, heading, *sagittal(heading))
@@ -233,9 +234,3 @@ class ExactWalker:
             state.landing.flat @ X,
         )
         return legs, _State(landed, leaving, target, state.bias)
-
-
-def _minimum_jerk(u: Float[np.ndarray, "F"]) -> Float[np.ndarray, "F"]:
-    """From 0 to 1 with no speed and no acceleration at both ends."""
-    u = np.clip(u, 0.0, 1.0)
-    return u**3 * (10.0 - 15.0 * u + 6.0 * u**2)

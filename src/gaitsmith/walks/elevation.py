@@ -119,6 +119,13 @@ class ElevationSet:
         times, values, slopes = self._table
         return hermite(times, values, slopes, np.asarray(stride_phase, dtype=np.float64) % 1.0)
 
+    def beside_at(self, stride_phase: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n 2"]:
+        """``meta`` and ``above`` at any phases of the leg's own stride, period 1."""
+        index = np.arange(-3, len(self.meta) + 4)
+        times = index / len(self.meta)
+        values = np.stack([self.meta, self.above], axis=-1)[index % len(self.meta)]
+        return hermite(times, values, parabola_slopes(times, values), stride_phase % 1.0)
+
     def for_body(self, body: Body) -> ElevationSet:
         """The same pelvis tilt and rotation on the hips of ``body``."""
         ratio = 0.5 * body.hip_width / pelvis_height(body)

@@ -16,7 +16,7 @@ import numpy as np
 from gaitsmith.body.sole import rolled_ankle
 from gaitsmith.conventions import LEFT, RIGHT
 from gaitsmith.errors import InvalidInputError
-from gaitsmith.geometry.curves import hermite, parabola_slopes, smoothstep
+from gaitsmith.geometry.curves import minimum_jerk, smoothstep
 from gaitsmith.walks.elevation import FOOT, PELVIS, SHANK, THIGH
 from gaitsmith.walks.generalize import affine, check_step_length
 from gaitsmith.walks.interpolate import ElevInterp
@@ -29,6 +29,7 @@ from gaitsmith.walks.kinematic import (
 )
 from gaitsmith.walks.model import SagittalStep
 from gaitsmith.walks.round_heel import turned
+from gaitsmith.walks.step_of import down
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -172,12 +173,11 @@ class _Figure:
         self.stance = np.stack([s.at(0.5 * phase) for s in own], axis=1)
         self.swing = np.stack([s.at(t) for s, t in zip(other, late, strict=True)], axis=1)
         early = 0.5 * phase
-        self.meta = (
-            np.stack([_periodic(s.meta, early) for s in own], axis=1),
-            np.stack([_periodic(s.meta, t) for s, t in zip(other, late, strict=True)], axis=1),
-        )
+        standing = np.stack([s.beside_at(early) for s in own], axis=1)
+        flying = np.stack([s.beside_at(t) for s, t in zip(other, late, strict=True)], axis=1)
+        self.meta = (standing[..., 0], flying[..., 0])
         #: ``(T, S)`` meters that the hips run above what the angles say.
-        self.above = body.leg_length * np.stack([_periodic(s.above, early) for s in own], axis=1)
+        self.above = body.leg_length * standing[..., 1]
         self.slope = np.array([s.slope for s in own])
         self._known: dict[tuple[float, float], tuple[np.ndarray, np.ndarray, bool]] = {}
 
@@ -225,7 +225,7 @@ class _Drawn:
         """
         phase, planar, foot, toe_off = figure.phase, figure.planar, figure.foot, figure.toe_off
         before, taken = after.taken(np.array(asked[:1])), figure.taken(np.array(asked[1:]))
-        share = _minimum_jerk(phase / SETTLED)
+        share = minimum_jerk(phase / SETTLED)
         # sets of the step before stand in the same order for both sides
         weights = before.weights + share[:, None] * (taken.weights - before.weights)
         own = np.einsum("ts,tsc->tc", weights, figure.stance)
@@ -241,7 +241,7 @@ class _Drawn:
         meta = np.where(pitch < 0.0, np.minimum(meta, -pitch), 0.0)
         # up the leg that stands to the hips, down the other to its ankle
         ankle = turned(planar.sole.stand(pitch[:, 0]), data_slope)
-        hip = ankle - planar.shin * _down(own[:, SHANK]) - planar.thigh * _down(own[:, THIGH])
+        hip = ankle - planar.shin * down(own[:, SHANK]) - planar.thigh * down(own[:, THIGH])
         shift = planar.pelvis * (np.tan(other[:, PELVIS]) - np.tan(own[:, PELVIS]))
         half = 0.5 * np.stack([shift, np.zeros(len(phase))], axis=-1)
         (previous, fell), (length, rise) = asked
@@ -249,7 +249,7 @@ class _Drawn:
         start, end = -0.5 * before.missed[0], 0.5 * taken.missed[0]
         soft = smoothstep(phase)
         center = hip + half + start + soft[:, None] * (end - start)
-        leg = planar.shin * _down(other[:, SHANK]) + planar.thigh * _down(other[:, THIGH])
+        leg = planar.shin * down(other[:, SHANK]) + planar.thigh * down(other[:, THIGH])
         swing = center + half + leg
         # the rear leg knows how the hips came here: it hands over while both legs bear
         ankle = rolled_ankle(foot, pitch[:, 1], meta[:, 1])
@@ -263,7 +263,7 @@ class _Drawn:
         slope = (off[last] - off[last - 1]) / (phase[last] - phase[last - 1])
         on = np.maximum(phase - toe_off, 0.0)[:, None]  # where it has left: as it was about to
         off = np.where(rear[:, None], off, off[last] + slope * on)
-        hands = _minimum_jerk(phase / max(toe_off, HANDED))[:, None]
+        hands = minimum_jerk(phase / max(toe_off, HANDED))[:, None]
         center = center + (1.0 - hands) * off
         center[:, 1] += (weights * figure.above).sum(axis=1)
         # heights from the line: of the step before at first, of this one at last
@@ -354,22 +354,3 @@ def _rolled(pitch: Float[np.ndarray, "T"]) -> Float[np.ndarray, "T"]:
     out = pitch.copy()
     out[first:] = np.minimum(out[first:], 0.0)
     return out
-
-
-def _periodic(
-    values: Float[np.ndarray, "K"], stride_phase: Float[np.ndarray, "T"]
-) -> Float[np.ndarray, "T"]:
-    count = len(values)
-    index = np.arange(-3, count + 4)
-    column = values[index % count][:, None]
-    times = index / count
-    return hermite(times, column, parabola_slopes(times, column), stride_phase % 1.0)[:, 0]
-
-
-def _down(elevation: Float[np.ndarray, "T"]) -> Float[np.ndarray, "T 2"]:
-    return np.stack([np.sin(elevation), -np.cos(elevation)], axis=-1)
-
-
-def _minimum_jerk(u: Float[np.ndarray, "T"]) -> Float[np.ndarray, "T"]:
-    u = np.clip(u, 0.0, 1.0)
-    return u**3 * (10.0 - 15.0 * u + 6.0 * u**2)

@@ -73,10 +73,10 @@ def step_of(
     """
     stance, swing, slope = np.asarray(stance), np.asarray(swing), np.asarray(slope)
     at = turned(figure.sole.stand(stance[..., FOOT] - _LEVEL - slope), slope)
-    at = at - figure.shin * _down(stance[..., SHANK]) - figure.thigh * _down(stance[..., THIGH])
+    at = at - figure.shin * down(stance[..., SHANK]) - figure.thigh * down(stance[..., THIGH])
     shift = figure.pelvis * (np.tan(swing[..., PELVIS]) - np.tan(stance[..., PELVIS]))
     at = at + np.stack([shift, np.zeros_like(shift)], axis=-1)
-    at = at + figure.thigh * _down(swing[..., THIGH]) + figure.shin * _down(swing[..., SHANK])
+    at = at + figure.thigh * down(swing[..., THIGH]) + figure.shin * down(swing[..., SHANK])
     return at - turned(figure.sole.stand(swing[..., FOOT] - _LEVEL - slope), slope)
 
 
@@ -85,11 +85,11 @@ def printed_step_of(
 ) -> Float[np.ndarray, "*n 2"]:
     """[SM01] Eq. 10 as printed, (length, height) in meters: from the toe to the other ankle."""
     lengths = (figure.foot, figure.shin, figure.thigh, figure.pelvis)
-    up = [-size * _down(stance[..., i]) for i, size in enumerate(lengths)]
-    down = [size * _down(swing[..., i]) for i, size in enumerate(lengths) if i > 0]
-    return np.sum(np.stack([*up, *down]), axis=0)
+    up = [-size * down(stance[..., i]) for i, size in enumerate(lengths)]
+    back = [size * down(swing[..., i]) for i, size in enumerate(lengths) if i > 0]
+    return np.sum(np.stack([*up, *back]), axis=0)
 
 
-def _down(elevation: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n 2"]:
-    """Unit (forward, up) vector of a segment from its proximal to its distal end."""
+def down(elevation: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n 2"]:
+    """Unit (forward, up) vector of a segment from its proximal to its distal end, by elevation."""
     return np.stack([np.sin(elevation), -np.cos(elevation)], axis=-1)
